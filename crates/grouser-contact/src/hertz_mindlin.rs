@@ -1,0 +1,76 @@
+//! Hertz–Mindlin with Tsuji damping and Coulomb friction: P0 Eqs. (16)–(27).
+
+use crate::{
+    Contact, ContactEnergy, ContactLaw, Loading, PairProperties, Real, Response, Tail, Vector, hertz_energy,
+    hertz_stiffness, mindlin,
+};
+
+/// The law of P0. `KEEP_TAIL`: the dashpot may attract ([`Tail::Keep`]). `TOTAL_DISPLACEMENT`:
+/// [`Loading::TotalDisplacement`] instead of [`Loading::Passive`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct HertzMindlin<const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool>;
+
+impl<const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> HertzMindlin<KEEP_TAIL, TOTAL_DISPLACEMENT> {
+    /// The tail that this type stands for.
+    pub const TAIL: Tail = if KEEP_TAIL { Tail::Keep } else { Tail::CutCorrected };
+    /// The loading rule that this type stands for.
+    pub const LOADING: Loading =
+        if TOTAL_DISPLACEMENT { Loading::TotalDisplacement } else { Loading::Passive };
+}
+
+impl<T: Real, const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> ContactLaw<T>
+    for HertzMindlin<KEEP_TAIL, TOTAL_DISPLACEMENT>
+{
+    type Memory = Vector<T>;
+
+    #[inline(always)]
+    fn respond(
+        &self,
+        contact: &Contact<T>,
+        pair: &PairProperties<T>,
+        spring: Vector<T>,
+    ) -> (Response<T>, Vector<T>) {
+        let &Contact { overlap, normal, velocity, effective_radius, effective_mass, time_step, .. } = contact;
+        // Normal: F_n = k δ − c v_n, the rate being the signed v·n (negative on approach).
+        let contact_radius = (effective_radius * overlap).sqrt();
+        let stiffness = hertz_stiffness(pair.normal_modulus, contact_radius);
+        let dashpot = pair.damping * (effective_mass * stiffness).sqrt();
+        let normal_velocity = velocity.dot(normal);
+        let pushed = stiffness * overlap - dashpot * normal_velocity;
+        let normal_force = if KEEP_TAIL { pushed } else { pushed.max(T::ZERO) };
+        let limit = pair.friction * normal_force.max(T::ZERO);
+
+        // Tangential: the spring is turned with the pair, stretched by the sliding, cut at Coulomb's limit.
+        let tangential_velocity = velocity - normal * normal_velocity;
+        let turned = spring - normal * normal.dot(spring);
+        let turned = turned + normal.cross(turned) * (contact.normal_spin * time_step);
+        let stretched = turned * kept_share::<T, TOTAL_DISPLACEMENT>(overlap, normal_velocity, time_step)
+            + tangential_velocity * time_step;
+        let tangential_stiffness = pair.tangential_modulus * contact_radius;
+        let tangential_dashpot = pair.tangential_damping_ratio * dashpot;
+        let tangential =
+            mindlin(stretched, tangential_velocity, tangential_stiffness, tangential_dashpot, limit);
+
+        let half = T::from_f64(0.5);
+        let spent = -tangential.force.dot(tangential_velocity);
+        let energy = ContactEnergy {
+            normal_elastic: hertz_energy(stiffness, overlap),
+            tangential_elastic: half * tangential_stiffness * tangential.spring.norm_squared(),
+            normal_damping: (stiffness * overlap - normal_force) * normal_velocity,
+            tangential: spent,
+            sliding: if tangential.is_sliding { spent } else { T::ZERO },
+        };
+        (Response { normal_force, tangential_force: tangential.force, energy }, tangential.spring)
+    }
+}
+
+/// Share of the spring that the present step keeps: while the load grows the *force* is kept, so the stretch shrinks as
+/// the contact radius √(R* δ) grows; while the load falls the stretch is kept and the force falls with the radius.
+#[inline(always)]
+fn kept_share<T: Real, const TOTAL_DISPLACEMENT: bool>(overlap: T, normal_velocity: T, time_step: T) -> T {
+    if TOTAL_DISPLACEMENT {
+        return T::ONE;
+    }
+    let overlap_before = (overlap + normal_velocity * time_step).max(T::ZERO);
+    (overlap_before.min(overlap) / overlap).sqrt()
+}

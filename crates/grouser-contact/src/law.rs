@@ -1,0 +1,120 @@
+//! What every contact law takes and gives.
+
+use crate::{PairProperties, Real, Vector};
+use serde::{Serialize, de::DeserializeOwned};
+use std::fmt::Debug;
+
+/// One contact at one instant. The normal points from the second body to the first.
+#[derive(Clone, Copy, Debug)]
+pub struct Contact<T> {
+    /// Overlap δ [m], positive while touching.
+    pub overlap: T,
+    /// Unit normal n from the second body to the first [-].
+    pub normal: Vector<T>,
+    /// Velocity of the first body against the second at the contact point [m/s].
+    pub velocity: Vector<T>,
+    /// Mean spin of the two bodies about the normal [rad/s]: turns the tangential memory with the pair.
+    pub normal_spin: T,
+    /// Effective radius R* = r₁ r₂ / (r₁ + r₂) [m]; r₁ against a plane.
+    pub effective_radius: T,
+    /// Reduced mass m* = m₁ m₂ / (m₁ + m₂) [kg]; m₁ against a body of prescribed motion.
+    pub effective_mass: T,
+    /// Time step [s].
+    pub time_step: T,
+}
+
+/// Force on the first body (the second receives the opposite), and where the power goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Response<T> {
+    /// Normal force [N], positive when it pushes the bodies apart.
+    pub normal_force: T,
+    /// Tangential force on the first body [N].
+    pub tangential_force: Vector<T>,
+    /// Flow of energy at this instant.
+    pub energy: ContactEnergy<T>,
+}
+
+/// Energy of a contact; whoever keeps no ledger does not read it, and the compiler drops it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ContactEnergy<T> {
+    /// Elastic energy stored by the normal overlap [J].
+    pub normal_elastic: T,
+    /// Elastic energy stored by the tangential spring [J].
+    pub tangential_elastic: T,
+    /// Power lost in the normal dashpot [W].
+    pub normal_damping: T,
+    /// Power that the tangential motion spends on the contact [W].
+    pub tangential: T,
+    /// The part of `tangential` that is spent while the contact slides [W].
+    pub sliding: T,
+}
+
+/// A law: from one contact and its memory to force and new memory. Owns no arrays; branch-free.
+pub trait ContactLaw<T: Real>: Copy + Debug + Send + Sync + 'static {
+    /// What a contact remembers from step to step.
+    type Memory: Memory<T>;
+
+    /// Force and memory after this step.
+    fn respond(
+        &self,
+        contact: &Contact<T>,
+        pair: &PairProperties<T>,
+        memory: Self::Memory,
+    ) -> (Response<T>, Self::Memory);
+}
+
+/// Number of contacts that a kernel works on at once.
+pub const BLOCK: usize = 64;
+
+/// What a contact remembers; `()` takes no bytes and no time.
+pub trait Memory<T: Real>:
+    Copy + Default + Debug + PartialEq + Send + Sync + Serialize + DeserializeOwned + 'static
+{
+    /// The memories of [`BLOCK`] contacts, one array a component.
+    type Block: Copy + Default;
+    /// The memory seen from the other body.
+    fn seen_from_the_other(self) -> Self;
+    /// Puts this memory into place `k` of a block.
+    fn store(self, block: &mut Self::Block, k: usize);
+    /// The memory at place `k` of a block.
+    fn load(block: &Self::Block, k: usize) -> Self;
+}
+
+impl<T: Real> Memory<T> for () {
+    type Block = ();
+    #[inline(always)]
+    fn seen_from_the_other(self) -> Self {}
+    #[inline(always)]
+    fn store(self, (): &mut (), _: usize) {}
+    #[inline(always)]
+    fn load((): &(), _: usize) -> Self {}
+}
+
+/// One number for each contact of a block, on its own cache lines.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Lanes<T>(pub [T; BLOCK]);
+
+impl<T: Real> Default for Lanes<T> {
+    fn default() -> Self {
+        Self([T::ZERO; BLOCK])
+    }
+}
+
+impl<T: Real> Memory<T> for Vector<T> {
+    type Block = [Lanes<T>; 3];
+    #[inline(always)]
+    fn seen_from_the_other(self) -> Self {
+        -self
+    }
+    #[inline(always)]
+    fn store(self, block: &mut Self::Block, k: usize) {
+        block[0].0[k] = self.x;
+        block[1].0[k] = self.y;
+        block[2].0[k] = self.z;
+    }
+    #[inline(always)]
+    fn load(block: &Self::Block, k: usize) -> Self {
+        Self::new(block[0].0[k], block[1].0[k], block[2].0[k])
+    }
+}
