@@ -1,0 +1,266 @@
+//! A bed of grains: everything that one step needs, and the step.
+
+use crate::force_pass::{InstructionSet, PassInput, SharedLoads, slab_forces};
+use crate::integrate::{Pace, correct, predict};
+use crate::neighbours::Neighbours;
+use crate::{BedEnergy, BedError, ContactLedger, Domain, Failure, Grains, Plane, Rotation};
+use grouser_contact::{ContactLaw, F64, PairTable, Precision, Real, Sphere};
+use grouser_geometry::Vec3;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// Overlap over the smaller radius beyond which Hertz's law says nothing.
+pub const LARGEST_OVERLAP: f64 = 0.3;
+
+/// What a bed is made of beside its grains.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BedSettings {
+    /// The box.
+    pub domain: Domain,
+    /// Floors and side walls.
+    pub planes: Vec<Plane>,
+    /// Acceleration of gravity [m/s²].
+    pub gravity: Vec3,
+    /// What the rotation of grains is allowed to do.
+    pub rotation: Rotation,
+    /// Keep the energy ledger up to date at every step.
+    pub has_ledger: bool,
+}
+
+/// Grains, their neighbours and the law between them.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound(serialize = "L: ContactLaw<P::Real>", deserialize = "L: ContactLaw<P::Real> + Default"))]
+pub struct Bed<L: ContactLaw<P::Real>, P: Precision = F64> {
+    grains: Grains<P>,
+    settings: BedSettings,
+    table: PairTable<P::Real>,
+    neighbours: Neighbours<P, L::Memory>,
+    ledger: ContactLedger,
+    deepest: f64,
+    #[serde(skip)]
+    law: L,
+    #[serde(skip, default = "InstructionSet::detect")]
+    set: InstructionSet,
+}
+
+impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
+    /// Bed of `spheres`, numbered in the order given.
+    ///
+    /// # Errors
+    /// When there are no grains, a sphere is not finite or has no mass or radius, or a period is shorter than five
+    /// grains.
+    pub fn new(
+        spheres: Vec<Sphere<P>>,
+        settings: BedSettings,
+        table: PairTable<P::Real>,
+        law: L,
+    ) -> Result<Self, BedError> {
+        BedError::check(&spheres, &settings, table.n_materials())?;
+        let grains = Grains::new(spheres);
+        let neighbours = Neighbours::new(grains.smallest_radius);
+        let ledger = ContactLedger::default();
+        let set = InstructionSet::detect();
+        Ok(Self { grains, settings, table, neighbours, ledger, deepest: 0.0, law, set })
+    }
+
+    /// One step of `time_step` [s] without tools.
+    ///
+    /// # Errors
+    /// When the motion has become meaningless.
+    pub fn step(&mut self, time_step: f64) -> Result<(), Failure> {
+        self.predict(time_step)?;
+        self.contact_forces(time_step);
+        self.correct(time_step);
+        Ok(())
+    }
+
+    /// Moves the grains to the end of the step and renews the lists where needed. Loads are zero afterwards.
+    ///
+    /// # Errors
+    /// When a grain is not finite, overlaps too far, or left the box.
+    pub fn predict(&mut self, time_step: f64) -> Result<(), Failure> {
+        if self.deepest > LARGEST_OVERLAP {
+            return Err(self.deepest_grain());
+        }
+        let Pace { fastest_squared, is_finite } =
+            predict(&mut self.grains, self.settings.rotation, time_step);
+        if !is_finite {
+            return Err(self.first_non_finite());
+        }
+        let travel = fastest_squared.sqrt() * time_step;
+        if self.neighbours.are_too_old(&self.grains, &self.settings.domain, travel) {
+            self.renew_lists()?;
+        }
+        Ok(())
+    }
+
+    /// Adds the forces among grains and of planes.
+    pub fn contact_forces(&mut self, time_step: f64) {
+        let input = PassInput {
+            spheres: &self.grains.spheres,
+            period: self.settings.domain.period(),
+            law: self.law,
+            table: &self.table,
+            time_step: P::Real::from_f64(time_step),
+        };
+        let loads = SharedLoads(self.grains.loads.as_mut_ptr(), self.grains.loads.len());
+        let planes = &self.settings.planes;
+        let (has_ledger, set) = (self.settings.has_ledger, self.set);
+        let lists = &mut self.neighbours;
+        let mut slabs: Vec<_> = lists.slabs.iter_mut().zip(&mut lists.plane_lists).collect();
+        let mut results = vec![(ContactLedger::default(), 0.0_f64); slabs.len()];
+        // Even slabs, then odd ones: no grain is written to by two slabs at once, and each sums in the same order.
+        for parity in 0..2 {
+            let turn = slabs.par_iter_mut().zip(&mut results).skip(parity).step_by(2);
+            turn.for_each(|((slab, plane_lists), (ledger, deepest))| {
+                (*ledger, *deepest) = slab_forces(slab, &input, loads, has_ledger, set);
+                for (list, plane) in plane_lists.iter_mut().zip(planes) {
+                    let (of_plane, depth) = list.forces(plane, &input, loads);
+                    *ledger += of_plane;
+                    *deepest = deepest.max(depth);
+                }
+            });
+        }
+        let mut pass = ContactLedger::default();
+        self.deepest = 0.0;
+        for (ledger, deepest) in results {
+            pass += ledger;
+            self.deepest = self.deepest.max(deepest);
+        }
+        if has_ledger {
+            self.ledger.record(&pass);
+        }
+    }
+
+    /// Corrects the velocities with all loads added by now.
+    pub fn correct(&mut self, time_step: f64) {
+        correct(&mut self.grains, self.settings.rotation, self.settings.gravity, time_step);
+    }
+
+    /// The grains.
+    pub fn grains(&self) -> &Grains<P> {
+        &self.grains
+    }
+
+    /// The grains, for tools that add loads or for setting initial velocities. Changing positions or the order of
+    /// grains needs [`Bed::renew_lists`] afterwards.
+    pub fn grains_mut(&mut self) -> &mut Grains<P> {
+        &mut self.grains
+    }
+
+    /// Box, planes, gravity and switches.
+    pub fn settings(&self) -> &BedSettings {
+        &self.settings
+    }
+
+    /// Turns the ledger on or off; turned on, it begins with nothing spent.
+    pub fn keep_ledger(&mut self, has_ledger: bool) {
+        self.settings.has_ledger = has_ledger;
+        self.ledger = self.ledger.restarted();
+    }
+
+    /// Number of touching pairs of grains at the last force pass.
+    pub fn n_contacts(&self) -> usize {
+        self.neighbours.slabs.iter().map(|slab| slab.n_touching()).sum()
+    }
+
+    /// Touching pairs of the last force pass, as places in [`Grains::spheres`].
+    pub fn contacts(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.neighbours.slabs.iter().flat_map(|slab| {
+            slab.pairs.iter().enumerate().filter(|(place, _)| slab.has_touched(*place)).map(|(_, &pair)| pair)
+        })
+    }
+
+    /// Number of listed pairs, touching or near.
+    pub fn n_listed(&self) -> usize {
+        self.neighbours.slabs.iter().map(|slab| slab.pairs.len()).sum()
+    }
+
+    /// How often the lists were made.
+    pub fn n_rebuilds(&self) -> u64 {
+        self.neighbours.n_rebuilds
+    }
+
+    /// Gap up to which a pair is listed now [m].
+    pub fn skin(&self) -> f64 {
+        self.neighbours.skin()
+    }
+
+    /// Largest overlap over the smaller radius at the last force pass [-].
+    pub fn deepest_overlap(&self) -> f64 {
+        self.deepest
+    }
+
+    /// Memory held by grains and lists [bytes].
+    pub fn bytes(&self) -> usize {
+        let per_grain = size_of::<Sphere<P>>() + 16 * size_of::<P::Real>() + 4;
+        self.grains.len() * per_grain + self.neighbours.bytes()
+    }
+
+    /// Force of the grains on plane `plane` at the last force pass [N].
+    pub fn plane_force(&self, plane: usize) -> Vec3 {
+        self.neighbours.plane_lists.iter().map(|lists| lists[plane].force).sum()
+    }
+
+    /// Energies at this instant; contact terms are zero without a ledger.
+    pub fn energy(&self) -> BedEnergy {
+        let [kinetic, rotational] = self.grains.kinetic_energy();
+        let mut gravitational = 0.0;
+        for sphere in &self.grains.spheres {
+            let height = crate::cell_grid::to_f64(sphere).dot(&self.settings.gravity);
+            gravitational -= sphere.mass.to_f64() * height;
+        }
+        BedEnergy { kinetic, rotational, gravitational, contacts: self.ledger }
+    }
+
+    /// Sorts the grains and makes the lists anew.
+    ///
+    /// # Errors
+    /// When a grain is not finite or has left the box.
+    pub fn renew_lists(&mut self) -> Result<(), Failure> {
+        let (grains, domain) = (&mut self.grains, &self.settings.domain);
+        grains.wrap(domain);
+        for (sphere, &grain) in grains.spheres.iter().zip(&grains.ids) {
+            if !sphere.is_finite() {
+                return Err(Failure::NonFinite { grain });
+            }
+            let position = crate::cell_grid::to_f64(sphere);
+            if domain.has_lost(position, 2.0 * grains.largest_radius) {
+                return Err(Failure::Lost { grain, position });
+            }
+        }
+        self.neighbours.rebuild(grains, domain, &self.settings.planes);
+        Ok(())
+    }
+
+    fn first_non_finite(&self) -> Failure {
+        let bad = self.grains.spheres.iter().position(|sphere| !sphere.is_finite());
+        Failure::NonFinite { grain: self.grains.ids[bad.unwrap_or(0)] }
+    }
+
+    /// The grain with the deepest overlap, found the slow way.
+    fn deepest_grain(&self) -> Failure {
+        let (spheres, period) = (&self.grains.spheres, self.settings.domain.period::<P::Coordinate>());
+        let mut worst = (0, 0.0);
+        for [i, j] in self.contacts() {
+            let (a, b) = (&spheres[i as usize], &spheres[j as usize]);
+            let distance = period.nearest(a.position - b.position).norm();
+            let depth = ((a.radius + b.radius - distance) / a.radius.min(b.radius)).to_f64();
+            if depth > worst.1 {
+                worst = (i as usize, depth);
+            }
+        }
+        for (index, sphere) in spheres.iter().enumerate() {
+            for plane in &self.settings.planes {
+                let radius = sphere.radius.to_f64();
+                let depth = 1.0 - plane.height(crate::cell_grid::to_f64(sphere)) / radius;
+                if depth > worst.1 {
+                    worst = (index, depth);
+                }
+            }
+        }
+        let (index, depth) = worst;
+        let position = crate::cell_grid::to_f64(&spheres[index]);
+        Failure::OverlapTooLarge { grain: self.grains.ids[index], position, depth }
+    }
+}

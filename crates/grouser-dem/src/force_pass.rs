@@ -1,0 +1,382 @@
+//! Forces of all listed pairs: filter, gather, contact law on blocks, ordered scatter.
+//!
+//! Pairs are looked at in list order. Those that touch are gathered, [`BLOCK`] at a time, from the sorted records into
+//! one array a component; the law then runs over the block without a branch, which the compiler turns into vector
+//! instructions; the results are added to the grains in list order. No fused multiply-add is used, so every
+//! instruction set gives the same bytes.
+
+use crate::domain::Period;
+use crate::ledger::ContactLedger;
+use crate::slab::Slab;
+use grouser_contact::{
+    BLOCK, Contact, ContactLaw, Lanes, Load, Memory, PairTable, Precision, Real, Sphere, Vector,
+};
+
+/// What a slab's pass needs beside the slab.
+pub(crate) struct PassInput<'a, P: Precision, L> {
+    pub spheres: &'a [Sphere<P>],
+    pub period: Period<P::Coordinate>,
+    pub law: L,
+    pub table: &'a PairTable<P::Real>,
+    pub time_step: P::Real,
+}
+
+/// Loads of all grains, written to by one slab at a time for each grain (see [`crate::slab`]).
+#[derive(Clone, Copy)]
+pub(crate) struct SharedLoads<T: Real>(pub *mut Load<T>, pub usize);
+
+// SAFETY: slabs that run at the same time write to disjoint grains: all even ones, then all odd ones, each writing to
+// itself and its successor only.
+unsafe impl<T: Real> Send for SharedLoads<T> {}
+// SAFETY: as above.
+unsafe impl<T: Real> Sync for SharedLoads<T> {}
+
+impl<T: Real> SharedLoads<T> {
+    #[inline(always)]
+    pub fn add(&self, grain: u32, force: Vector<T>, torque: Vector<T>) {
+        debug_assert!((grain as usize) < self.1);
+        // SAFETY: lists hold grain numbers below the number of grains, and no other slab writes to this grain now.
+        unsafe { (*self.0.add(grain as usize)).add(force, torque) }
+    }
+}
+
+/// One component for each contact of a block. Inputs are overwritten by outputs where both have three components.
+struct Block<T: Real, M: Memory<T>> {
+    /// Centre of the second body to centre of the first [m]; after the law the force on the first [N].
+    difference: [Lanes<T>; 3],
+    /// (r₁ + r₂)² − distance² [m²], taken in the precision of coordinates.
+    excess: Lanes<T>,
+    radius: [Lanes<T>; 2],
+    mass: [Lanes<T>; 2],
+    /// Velocity of the first centre against the second [m/s]; after the law n × F [N].
+    velocity: [Lanes<T>; 3],
+    spin: [[Lanes<T>; 3]; 2],
+    /// Distance of the contact point from each centre [m] (output).
+    arm: [Lanes<T>; 2],
+    memory: M::Block,
+    normal_modulus: Lanes<T>,
+    tangential_modulus: Lanes<T>,
+    damping: Lanes<T>,
+    tangential_damping_ratio: Lanes<T>,
+    friction: Lanes<T>,
+    /// Sums over all blocks of a pass, one lane each.
+    ledger: [Lanes<T>; 5],
+    /// Largest overlap over the smaller radius, one lane each.
+    deepest: Lanes<T>,
+}
+
+/// Instruction sets that the pass is compiled for; all give the same bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InstructionSet {
+    /// What every machine of this architecture has.
+    Baseline,
+    /// 256-bit vectors.
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    /// 512-bit vectors.
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+impl InstructionSet {
+    /// The widest set that this machine has.
+    pub fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let has_avx512 = is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512vl");
+            if has_avx512 {
+                return Self::Avx512;
+            }
+            if is_x86_feature_detected!("avx2") {
+                return Self::Avx2;
+            }
+        }
+        Self::Baseline
+    }
+}
+
+/// Adds the forces of all touching pairs of `slab` to `loads`; returns energies and the deepest relative overlap.
+pub(crate) fn slab_forces<P: Precision, L: ContactLaw<P::Real>>(
+    slab: &mut Slab<P::Real, L::Memory>,
+    input: &PassInput<P, L>,
+    loads: SharedLoads<P::Real>,
+    has_ledger: bool,
+    set: InstructionSet,
+) -> (ContactLedger, f64) {
+    match set {
+        InstructionSet::Baseline => dispatch_ledger(slab, input, loads, has_ledger),
+        // SAFETY: `detect` found the instructions on this machine.
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx2 => unsafe { slab_forces_avx2(slab, input, loads, has_ledger) },
+        // SAFETY: as above.
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx512 => unsafe { slab_forces_avx512(slab, input, loads, has_ledger) },
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn slab_forces_avx2<P: Precision, L: ContactLaw<P::Real>>(
+    slab: &mut Slab<P::Real, L::Memory>,
+    input: &PassInput<P, L>,
+    loads: SharedLoads<P::Real>,
+    has_ledger: bool,
+) -> (ContactLedger, f64) {
+    dispatch_ledger(slab, input, loads, has_ledger)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
+fn slab_forces_avx512<P: Precision, L: ContactLaw<P::Real>>(
+    slab: &mut Slab<P::Real, L::Memory>,
+    input: &PassInput<P, L>,
+    loads: SharedLoads<P::Real>,
+    has_ledger: bool,
+) -> (ContactLedger, f64) {
+    dispatch_ledger(slab, input, loads, has_ledger)
+}
+
+#[inline(always)]
+fn dispatch_ledger<P: Precision, L: ContactLaw<P::Real>>(
+    slab: &mut Slab<P::Real, L::Memory>,
+    input: &PassInput<P, L>,
+    loads: SharedLoads<P::Real>,
+    has_ledger: bool,
+) -> (ContactLedger, f64) {
+    if has_ledger { pass::<P, L, true>(slab, input, loads) } else { pass::<P, L, false>(slab, input, loads) }
+}
+
+#[inline(always)]
+fn pass<P: Precision, L: ContactLaw<P::Real>, const LEDGER: bool>(
+    slab: &mut Slab<P::Real, L::Memory>,
+    input: &PassInput<P, L>,
+    loads: SharedLoads<P::Real>,
+) -> (ContactLedger, f64) {
+    let mut block = Block::<P::Real, L::Memory>::new(input.table);
+    let mut waiting = [0_u32; 2 * BLOCK];
+    let mut n_waiting = 0;
+    for word in 0..slab.touched.len() {
+        let from = word * 64;
+        let pairs = &slab.pairs[from..slab.pairs.len().min(from + 64)];
+        let mut touching = 0_u64;
+        for (bit, &[i, j]) in pairs.iter().enumerate() {
+            let (first, second) = (&input.spheres[i as usize], &input.spheres[j as usize]);
+            let difference = input.period.nearest(first.position - second.position);
+            let reach = first.radius + second.radius;
+            let touches = difference.norm_squared() < reach * reach;
+            touching |= u64::from(touches) << bit;
+            waiting[n_waiting] = (from + bit) as u32;
+            n_waiting += usize::from(touches);
+        }
+        // Pairs that have just parted forget.
+        let mut parted = slab.touched[word] & !touching;
+        while parted != 0 {
+            slab.memory[from + parted.trailing_zeros() as usize] = L::Memory::default();
+            parted &= parted - 1;
+        }
+        slab.touched[word] = touching;
+        if n_waiting >= BLOCK {
+            block.work::<P, L, LEDGER>(&waiting[..BLOCK], slab, input, loads);
+            waiting.copy_within(BLOCK..n_waiting, 0);
+            n_waiting -= BLOCK;
+        }
+    }
+    block.work::<P, L, LEDGER>(&waiting[..n_waiting], slab, input, loads);
+    block.totals(input.time_step)
+}
+
+impl<T: Real, M: Memory<T>> Block<T, M> {
+    fn new(table: &PairTable<T>) -> Self {
+        let mut block = Self {
+            difference: Default::default(),
+            excess: Lanes([T::from_f64(0.5); BLOCK]),
+            radius: [Lanes([T::ONE; BLOCK]); 2],
+            mass: [Lanes([T::ONE; BLOCK]); 2],
+            velocity: Default::default(),
+            spin: Default::default(),
+            arm: Default::default(),
+            memory: Default::default(),
+            normal_modulus: Default::default(),
+            tangential_modulus: Default::default(),
+            damping: Default::default(),
+            tangential_damping_ratio: Default::default(),
+            friction: Default::default(),
+            ledger: Default::default(),
+            deepest: Default::default(),
+        };
+        for k in 0..BLOCK {
+            block.difference[0].0[k] = T::ONE;
+            block.set_pair(k, table, 0, 0);
+        }
+        block
+    }
+
+    /// Constants of materials `i` and `j` for contact `k`.
+    #[inline(always)]
+    fn set_pair(&mut self, k: usize, table: &PairTable<T>, i: u32, j: u32) {
+        let pair = table.pair(i, j);
+        self.normal_modulus.0[k] = pair.normal_modulus;
+        self.tangential_modulus.0[k] = pair.tangential_modulus;
+        self.damping.0[k] = pair.damping;
+        self.tangential_damping_ratio.0[k] = pair.tangential_damping_ratio;
+        self.friction.0[k] = pair.friction;
+    }
+
+    #[inline(always)]
+    fn work<P: Precision<Real = T>, L: ContactLaw<T, Memory = M>, const LEDGER: bool>(
+        &mut self,
+        places: &[u32],
+        slab: &mut Slab<T, M>,
+        input: &PassInput<P, L>,
+        loads: SharedLoads<T>,
+    ) {
+        self.gather(places, slab, input);
+        // Groups of 16 lanes: a constant trip count that every vector width divides.
+        for group in 0..places.len().div_ceil(16) {
+            self.respond::<L, LEDGER>(group * 16, places.len(), &input.law, input.time_step);
+        }
+        self.scatter(places, slab, loads);
+    }
+
+    #[inline(always)]
+    fn gather<P: Precision<Real = T>, L>(
+        &mut self,
+        places: &[u32],
+        slab: &Slab<T, M>,
+        input: &PassInput<P, L>,
+    ) {
+        let has_materials = input.table.n_materials() > 1;
+        for (k, &place) in places.iter().enumerate() {
+            let [i, j] = slab.pairs[place as usize];
+            let (first, second) = (&input.spheres[i as usize], &input.spheres[j as usize]);
+            let difference = input.period.nearest(first.position - second.position);
+            let reach = first.radius + second.radius;
+            let narrow = |c: P::Coordinate| T::from_f64(c.to_f64());
+            self.excess.0[k] = narrow(reach * reach - difference.norm_squared());
+            self.radius[0].0[k] = narrow(first.radius);
+            self.radius[1].0[k] = narrow(second.radius);
+            self.mass[0].0[k] = first.mass;
+            self.mass[1].0[k] = second.mass;
+            let difference = difference.to_array();
+            let velocity = (first.velocity - second.velocity).to_array();
+            let spins = [first.spin.to_array(), second.spin.to_array()];
+            for axis in 0..3 {
+                self.difference[axis].0[k] = narrow(difference[axis]);
+                self.velocity[axis].0[k] = velocity[axis];
+                self.spin[0][axis].0[k] = spins[0][axis];
+                self.spin[1][axis].0[k] = spins[1][axis];
+            }
+            slab.memory[place as usize].store(&mut self.memory, k);
+            if has_materials {
+                self.set_pair(k, input.table, first.material, second.material);
+            }
+        }
+    }
+
+    /// The contact law on lanes `from..from + 16`, of which those below `used` hold contacts.
+    #[inline(always)]
+    fn respond<L: ContactLaw<T, Memory = M>, const LEDGER: bool>(
+        &mut self,
+        from: usize,
+        used: usize,
+        law: &L,
+        time_step: T,
+    ) {
+        let lanes =
+            |group: &[Lanes<T>; 3], k: usize| Vector::new(group[0].0[k], group[1].0[k], group[2].0[k]);
+        for k in from..from + 16 {
+            let (radii, masses) =
+                ([self.radius[0].0[k], self.radius[1].0[k]], [self.mass[0].0[k], self.mass[1].0[k]]);
+            let (reach, total_mass) = (radii[0] + radii[1], masses[0] + masses[1]);
+            let difference = lanes(&self.difference, k);
+            let distance = difference.norm();
+            // One division serves 1/distance, the overlap excess/(reach + distance), R* and m*.
+            let edge = reach + distance;
+            let (lengths, sums) = (distance * edge, reach * total_mass);
+            let inverse = T::ONE / (lengths * sums);
+            let normal = difference * (inverse * edge * sums);
+            let overlap = self.excess.0[k] * (inverse * distance * sums);
+            let effective_radius = radii[0] * radii[1] * (inverse * lengths * total_mass);
+            let effective_mass = masses[0] * masses[1] * (inverse * lengths * reach);
+            let half = T::from_f64(0.5);
+            let arms = [radii[0] - half * overlap, radii[1] - half * overlap];
+            let (spin_first, spin_second) = (lanes(&self.spin[0], k), lanes(&self.spin[1], k));
+            let rolled = spin_first * arms[0] + spin_second * arms[1];
+            let contact = Contact {
+                overlap,
+                normal,
+                velocity: lanes(&self.velocity, k) - rolled.cross(normal),
+                normal_spin: half * (spin_first + spin_second).dot(normal),
+                effective_radius,
+                effective_mass,
+                time_step,
+            };
+            let pair = grouser_contact::PairProperties {
+                normal_modulus: self.normal_modulus.0[k],
+                tangential_modulus: self.tangential_modulus.0[k],
+                damping: self.damping.0[k],
+                tangential_damping_ratio: self.tangential_damping_ratio.0[k],
+                friction: self.friction.0[k],
+            };
+            let (response, memory) = law.respond(&contact, &pair, M::load(&self.memory, k));
+            memory.store(&mut self.memory, k);
+            let force = normal * response.normal_force + response.tangential_force;
+            let couple = normal.cross(response.tangential_force);
+            let (force, couple) = (force.to_array(), couple.to_array());
+            for axis in 0..3 {
+                self.difference[axis].0[k] = force[axis];
+                self.velocity[axis].0[k] = couple[axis];
+            }
+            self.arm[0].0[k] = arms[0];
+            self.arm[1].0[k] = arms[1];
+            let is_used = if k < used { T::ONE } else { T::ZERO };
+            let depth = overlap * is_used / radii[0].min(radii[1]);
+            self.deepest.0[k] = depth.max(self.deepest.0[k]);
+            if LEDGER {
+                let energy = response.energy;
+                let terms = [
+                    energy.normal_elastic,
+                    energy.tangential_elastic,
+                    energy.normal_damping,
+                    energy.tangential,
+                    energy.sliding,
+                ];
+                for (sum, term) in self.ledger.iter_mut().zip(terms) {
+                    sum.0[k] += term * is_used;
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn scatter(&mut self, places: &[u32], slab: &mut Slab<T, M>, loads: SharedLoads<T>) {
+        for (k, &place) in places.iter().enumerate() {
+            let [i, j] = slab.pairs[place as usize];
+            slab.memory[place as usize] = M::load(&self.memory, k);
+            let [fx, fy, fz] = &self.difference;
+            let force = Vector::new(fx.0[k], fy.0[k], fz.0[k]);
+            let [cx, cy, cz] = &self.velocity;
+            let couple = -Vector::new(cx.0[k], cy.0[k], cz.0[k]);
+            loads.add(i, force, couple * self.arm[0].0[k]);
+            loads.add(j, -force, couple * self.arm[1].0[k]);
+        }
+    }
+
+    fn totals(&self, time_step: T) -> (ContactLedger, f64) {
+        let total = |lanes: &Lanes<T>| lanes.0.iter().map(|value| value.to_f64()).sum::<f64>();
+        let dt = time_step.to_f64();
+        let [normal_elastic, tangential_elastic, normal_damping, tangential, sliding] = &self.ledger;
+        let ledger = ContactLedger {
+            normal_elastic: total(normal_elastic),
+            tangential_elastic: total(tangential_elastic),
+            normal_damping: total(normal_damping) * dt,
+            tangential: total(tangential) * dt,
+            sliding: total(sliding) * dt,
+            ..Default::default()
+        };
+        let deepest = self.deepest.0.iter().fold(0.0, |most, depth| depth.to_f64().max(most));
+        (ledger, deepest)
+    }
+}

@@ -1,0 +1,82 @@
+//! Where the energy of a bed is and where it went.
+
+use serde::{Deserialize, Serialize};
+use std::ops::AddAssign;
+
+/// Energy of contacts: stored now, and spent since the ledger began.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactLedger {
+    /// Stored by normal overlaps at this instant [J].
+    pub normal_elastic: f64,
+    /// Stored by tangential springs at this instant [J].
+    pub tangential_elastic: f64,
+    /// Lost in normal dashpots [J].
+    pub normal_damping: f64,
+    /// Spent by tangential motion on contacts: what is not stored of it was lost [J].
+    pub tangential: f64,
+    /// The part of `tangential` spent while contacts slid [J].
+    pub sliding: f64,
+    /// Stored by tangential springs when the ledger began [J].
+    pub tangential_elastic_at_start: f64,
+}
+
+impl ContactLedger {
+    /// Adds the spending of one pass to this running ledger; stored energies are those of the latest pass.
+    pub fn record(&mut self, pass: &Self) {
+        self.normal_elastic = pass.normal_elastic;
+        self.tangential_elastic = pass.tangential_elastic;
+        self.normal_damping += pass.normal_damping;
+        self.tangential += pass.tangential;
+        self.sliding += pass.sliding;
+    }
+
+    /// A ledger that begins now, with nothing spent.
+    pub fn restarted(&self) -> Self {
+        Self {
+            normal_elastic: self.normal_elastic,
+            tangential_elastic: self.tangential_elastic,
+            tangential_elastic_at_start: self.tangential_elastic,
+            ..Self::default()
+        }
+    }
+
+    /// Stored energy [J].
+    pub fn elastic(&self) -> f64 {
+        self.normal_elastic + self.tangential_elastic
+    }
+
+    /// Energy lost in dashpots and friction [J].
+    pub fn dissipated(&self) -> f64 {
+        self.normal_damping + self.tangential + self.tangential_elastic_at_start - self.tangential_elastic
+    }
+}
+
+impl AddAssign for ContactLedger {
+    fn add_assign(&mut self, other: Self) {
+        self.normal_elastic += other.normal_elastic;
+        self.tangential_elastic += other.tangential_elastic;
+        self.normal_damping += other.normal_damping;
+        self.tangential += other.tangential;
+        self.sliding += other.sliding;
+    }
+}
+
+/// Energy of a whole bed at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BedEnergy {
+    /// Translational kinetic energy [J].
+    pub kinetic: f64,
+    /// Rotational kinetic energy [J].
+    pub rotational: f64,
+    /// Gravitational energy relative to the origin [J].
+    pub gravitational: f64,
+    /// Contacts among grains and with planes.
+    pub contacts: ContactLedger,
+}
+
+impl BedEnergy {
+    /// Kinetic, gravitational and elastic energy [J].
+    pub fn stored(&self) -> f64 {
+        self.kinetic + self.rotational + self.gravitational + self.contacts.elastic()
+    }
+}

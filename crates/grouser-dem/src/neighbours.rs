@@ -1,0 +1,179 @@
+//! Verlet lists over the sorted bed, with a skin that tunes itself.
+
+use crate::cell_grid::CellGrid;
+use crate::plane::{Plane, PlaneList};
+use crate::slab::{Slab, layers_of_slabs};
+use crate::{Domain, Grains};
+use grouser_contact::{Memory, Precision, Real, Vector};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// Grains of a slab: few enough for the second-level cache, enough that the tasks outweigh their management.
+const GRAINS_PER_SLAB: usize = 512;
+/// Cost of a rebuild per grain, in units of one look at a pair in the force pass (measured, `docs/performance.md`).
+const REBUILD_COST: f64 = 80.0;
+
+/// The lists and the record of when they were made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "M: Memory<P::Real>")]
+pub(crate) struct Neighbours<P: Precision, M> {
+    pub slabs: Vec<Slab<P::Real, M>>,
+    /// Grains near each plane, slab by slab.
+    pub plane_lists: Vec<Vec<PlaneList<P::Real, M>>>,
+    /// Gap up to which a pair is listed [m].
+    skin: f64,
+    /// Upper bound of what any grain has moved since the lists were made [m].
+    moved: f64,
+    /// Positions at the last rebuild.
+    reference: Vec<Vector<P::Coordinate>>,
+    steps_since_rebuild: u32,
+    /// How often the lists were made.
+    pub n_rebuilds: u64,
+}
+
+impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
+    /// No lists yet; the first look makes them.
+    pub fn new(smallest_radius: f64) -> Self {
+        Self {
+            slabs: Vec::new(),
+            plane_lists: Vec::new(),
+            skin: 0.2 * smallest_radius,
+            moved: f64::INFINITY,
+            reference: Vec::new(),
+            steps_since_rebuild: 0,
+            n_rebuilds: 0,
+        }
+    }
+
+    /// Gap up to which a pair is listed [m].
+    pub fn skin(&self) -> f64 {
+        self.skin
+    }
+
+    /// Records that no grain moved further than `travel` [m] in this step, and says whether the lists are too old.
+    /// The sum of travels is an upper bound; only when it is used up are the true displacements looked at.
+    pub fn are_too_old(&mut self, grains: &Grains<P>, domain: &Domain, travel: f64) -> bool {
+        self.steps_since_rebuild += 1;
+        self.moved += travel;
+        if self.moved < 0.5 * self.skin {
+            return false;
+        }
+        if self.reference.len() != grains.spheres.len() {
+            return true;
+        }
+        let period = domain.period::<P::Coordinate>();
+        let farthest =
+            grains.spheres.iter().zip(&self.reference).fold(P::Coordinate::ZERO, |most, (sphere, &old)| {
+                period.nearest(sphere.position - old).norm_squared().max(most)
+            });
+        self.moved = farthest.to_f64().sqrt();
+        // Look again before half of what is left can be used up; a list about to expire is made anew at once.
+        self.moved + travel >= 0.5 * self.skin
+    }
+
+    /// Sorts the grains and makes the lists anew; every touching pair keeps its memory.
+    pub fn rebuild(&mut self, grains: &mut Grains<P>, domain: &Domain, planes: &[Plane]) {
+        self.tune_skin(grains);
+        let range = 2.0 * grains.largest_radius + self.skin;
+        let mut grid = CellGrid::new(&grains.spheres, domain, range);
+        let cells: Vec<u32> = grains.spheres.iter().map(|sphere| grid.cell_of(sphere)).collect();
+        let order = grid.sort(&cells);
+        grains.reorder(&order);
+        let period = domain.period();
+        let skin = P::Coordinate::from_f64(self.skin);
+        let spheres = &grains.spheres;
+        let mut slabs: Vec<Slab<P::Real, M>> = layers_of_slabs(&grid, GRAINS_PER_SLAB)
+            .into_par_iter()
+            .map(|layers| Slab::build(&grid, layers, spheres, &period, skin))
+            .collect();
+        let old = Lookup::new(&self.slabs, spheres.len());
+        slabs.par_iter_mut().for_each(|slab| old.carry_over(slab, &order));
+        let plane_lists = slabs
+            .iter()
+            .map(|slab| {
+                let list = |(index, plane)| {
+                    let remembered =
+                        |grain: u32| old.plane_memory(&self.plane_lists, index, order[grain as usize]);
+                    PlaneList::build(plane, slab.grains(), spheres, self.skin, remembered)
+                };
+                planes.iter().enumerate().map(list).collect()
+            })
+            .collect();
+        self.slabs = slabs;
+        self.plane_lists = plane_lists;
+        self.reference.clear();
+        self.reference.extend(grains.spheres.iter().map(|sphere| sphere.position));
+        self.moved = 0.0;
+        self.steps_since_rebuild = 0;
+        self.n_rebuilds += 1;
+    }
+
+    /// Balances looks at pairs, which grow with the skin s like p₀ (1 + s/2r)³, against rebuilds, which come every
+    /// s/(2u) steps when the fastest grain moves u a step: the least cost has p₀ 3/(2r) (1 + s/2r)² = 2 u B / s².
+    fn tune_skin(&mut self, grains: &Grains<P>) {
+        if self.steps_since_rebuild == 0 || self.slabs.is_empty() {
+            return;
+        }
+        let n_grains = grains.spheres.len() as f64;
+        let diameter = 2.0 * grains.smallest_radius;
+        let n_pairs: usize = self.slabs.iter().map(|slab| slab.pairs.len()).sum();
+        let pairs_without_skin = n_pairs as f64 / n_grains / (1.0 + self.skin / diameter).powi(3);
+        let per_step = self.moved / f64::from(self.steps_since_rebuild);
+        let mut skin = self.skin;
+        for _ in 0..8 {
+            let growth = 3.0 * pairs_without_skin.max(0.5) / diameter * (1.0 + skin / diameter).powi(2);
+            skin = (2.0 * per_step * REBUILD_COST / growth).sqrt();
+        }
+        let gently = skin.clamp(0.5 * self.skin, 2.0 * self.skin);
+        self.skin = gently.clamp(2e-3 * diameter, 0.5 * diameter);
+    }
+
+    /// Memory held by the lists [bytes].
+    pub fn bytes(&self) -> usize {
+        self.slabs.iter().map(Slab::bytes).sum::<usize>()
+            + size_of::<Vector<P::Coordinate>>() * self.reference.capacity()
+    }
+}
+
+/// The old lists, found by grain.
+struct Lookup<'a, T: Real, M> {
+    slabs: &'a [Slab<T, M>],
+    slab_of: Vec<u32>,
+}
+
+impl<'a, T: Real, M: Memory<T>> Lookup<'a, T, M> {
+    fn new(slabs: &'a [Slab<T, M>], n_grains: usize) -> Self {
+        let mut slab_of = Vec::with_capacity(n_grains);
+        for (index, slab) in slabs.iter().enumerate() {
+            slab_of.resize(slab_of.len() + slab.n_grains(), index as u32);
+        }
+        Self { slabs, slab_of }
+    }
+
+    /// Memory of the pair of old grains (i, j), seen from `i`; `None` when the pair did not touch.
+    fn memory(&self, i: u32, j: u32) -> Option<M> {
+        let seek = |i: u32, j: u32| {
+            let slab = &self.slabs[*self.slab_of.get(i as usize)? as usize];
+            let place = slab.find(i, j)?;
+            slab.has_touched(place).then(|| slab.memory[place])
+        };
+        seek(i, j).or_else(|| seek(j, i).map(M::seen_from_the_other))
+    }
+
+    /// What old grain `grain` remembers of plane `plane`.
+    fn plane_memory(&self, lists: &[Vec<PlaneList<T, M>>], plane: usize, grain: u32) -> M {
+        let list = self.slab_of.get(grain as usize).and_then(|&slab| lists.get(slab as usize)?.get(plane));
+        list.and_then(|list| list.memory_of(grain)).unwrap_or_default()
+    }
+
+    /// Fills the memory of a new slab; `order[new]` is the old number of a grain.
+    fn carry_over(&self, slab: &mut Slab<T, M>, order: &[u32]) {
+        for place in 0..slab.pairs.len() {
+            let [i, j] = slab.pairs[place];
+            if let Some(memory) = self.memory(order[i as usize], order[j as usize]) {
+                slab.memory[place] = memory;
+                slab.touched[place / 64] |= 1 << (place % 64);
+            }
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Analytic planes: floors and side walls.
+
+use crate::cell_grid::to_f64;
+use crate::force_pass::{PassInput, SharedLoads};
+use crate::ledger::ContactLedger;
+use grouser_contact::{Contact, ContactLaw, Memory, Precision, Real, Sphere, Vector};
+use grouser_geometry::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// A half-space that grains cannot enter.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plane {
+    /// A point of the surface [m].
+    pub point: Vec3,
+    /// Unit normal into the space of the grains.
+    pub normal: Vec3,
+    /// Row of the material table.
+    pub material: u32,
+}
+
+impl Plane {
+    /// Height of a point above the surface [m].
+    pub fn height(&self, place: Vec3) -> f64 {
+        (place - self.point).dot(&self.normal)
+    }
+}
+
+/// Grains of one slab near one plane.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "M: Memory<T>")]
+pub(crate) struct PlaneList<T: Real, M> {
+    /// Grains (sorted order) that may touch before the next rebuild.
+    pub grains: Vec<u32>,
+    /// What each of them remembers; zero where it does not touch.
+    pub memory: Vec<M>,
+    /// Force that the grains exert on the plane at the last pass [N].
+    pub force: Vec3,
+    #[serde(skip)]
+    scalar: std::marker::PhantomData<T>,
+}
+
+impl<T: Real, M: Memory<T>> PlaneList<T, M> {
+    /// Grains of `range` closer to `plane` than `skin` [m]; `remembered(grain)` is what a grain brings along.
+    pub fn build<P: Precision<Real = T>>(
+        plane: &Plane,
+        range: std::ops::Range<u32>,
+        spheres: &[Sphere<P>],
+        skin: f64,
+        remembered: impl Fn(u32) -> M,
+    ) -> Self {
+        let near = |&grain: &u32| {
+            let sphere = &spheres[grain as usize];
+            plane.height(to_f64(sphere)) < sphere.radius.to_f64() + skin
+        };
+        let grains: Vec<u32> = range.filter(near).collect();
+        let memory = grains.iter().map(|&grain| remembered(grain)).collect();
+        Self { grains, memory, force: Vec3::zeros(), scalar: std::marker::PhantomData }
+    }
+
+    /// What `grain` remembers of this plane.
+    pub fn memory_of(&self, grain: u32) -> Option<M> {
+        self.grains.binary_search(&grain).ok().map(|place| self.memory[place])
+    }
+
+    /// Adds the plane's forces to the grains; returns energies and the deepest relative overlap.
+    ///
+    /// The plane is rigid: R* and m* are those of the grain, and the contact point lies on the surface.
+    pub fn forces<P: Precision<Real = T>, L: ContactLaw<T, Memory = M>>(
+        &mut self,
+        plane: &Plane,
+        input: &PassInput<P, L>,
+        loads: SharedLoads<T>,
+    ) -> (ContactLedger, f64) {
+        let (mut total, mut ledger, mut deepest) = (Vector::<f64>::ZERO, ContactLedger::default(), 0.0_f64);
+        let dt = input.time_step.to_f64();
+        let normal = Vector::new(plane.normal.x, plane.normal.y, plane.normal.z).cast::<T>();
+        for (&grain, memory) in self.grains.iter().zip(&mut self.memory) {
+            let sphere = &input.spheres[grain as usize];
+            let radius = sphere.radius.to_f64();
+            let overlap = radius - plane.height(to_f64(sphere));
+            if overlap <= 0.0 {
+                *memory = M::default();
+                continue;
+            }
+            deepest = deepest.max(overlap / radius);
+            let (overlap, arm) = (T::from_f64(overlap), T::from_f64(radius - overlap));
+            let contact = Contact {
+                overlap,
+                normal,
+                velocity: sphere.velocity - (sphere.spin * arm).cross(normal),
+                normal_spin: sphere.spin.dot(normal),
+                effective_radius: T::from_f64(radius),
+                effective_mass: sphere.mass,
+                time_step: input.time_step,
+            };
+            let pair = input.table.pair(sphere.material, plane.material);
+            let (response, remembered) = input.law.respond(&contact, pair, *memory);
+            *memory = remembered;
+            let force = normal * response.normal_force + response.tangential_force;
+            loads.add(grain, force, normal.cross(response.tangential_force) * -arm);
+            total -= force.cast();
+            let energy = response.energy;
+            ledger += ContactLedger {
+                normal_elastic: energy.normal_elastic.to_f64(),
+                tangential_elastic: energy.tangential_elastic.to_f64(),
+                normal_damping: energy.normal_damping.to_f64() * dt,
+                tangential: energy.tangential.to_f64() * dt,
+                sliding: energy.sliding.to_f64() * dt,
+                ..Default::default()
+            };
+        }
+        self.force = Vec3::new(total.x, total.y, total.z);
+        (ledger, deepest)
+    }
+}

@@ -1,0 +1,116 @@
+//! A slab of the sorted bed: the grains of some cell layers and the pairs that start there.
+//!
+//! A pair that starts in slab s ends in s or in s + 1. So all even slabs can be worked on at once, and then all odd
+//! ones, without two of them ever writing to one grain; and every grain sums its forces in the same order whatever the
+//! number of threads.
+
+use crate::cell_grid::CellGrid;
+use crate::domain::Period;
+use grouser_contact::{Memory, Precision, Real, Sphere};
+use serde::{Deserialize, Serialize};
+
+/// Pairs of one slab, with the memory of each.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "M: Memory<T>")]
+pub(crate) struct Slab<T: Real, M> {
+    /// First grain of the slab (sorted order).
+    pub first_grain: u32,
+    /// First pair of each grain of the slab; one more entry than grains.
+    pub rows: Vec<u32>,
+    /// Grains that may touch before the next rebuild, by rising first grain.
+    pub pairs: Vec<[u32; 2]>,
+    /// What each pair remembers; zero where it does not touch.
+    pub memory: Vec<M>,
+    /// One bit a pair, 64 pairs a word: it touched at the last force pass.
+    pub touched: Vec<u64>,
+    #[serde(skip)]
+    scalar: std::marker::PhantomData<T>,
+}
+
+impl<T: Real, M: Memory<T>> Slab<T, M> {
+    /// Pairs whose surfaces are closer than `skin` [m], of the cell layers `layers`.
+    pub fn build<P: Precision<Real = T>>(
+        grid: &CellGrid,
+        layers: std::ops::Range<usize>,
+        spheres: &[Sphere<P>],
+        period: &Period<P::Coordinate>,
+        skin: P::Coordinate,
+    ) -> Self {
+        let [_, n_rows, n_columns] = grid.counts;
+        let layer = n_rows * n_columns;
+        let first_grain = grid.first[layers.start * layer];
+        let mut rows = vec![0];
+        let mut pairs = Vec::new();
+        let mut ranges: Vec<std::ops::Range<u32>> = Vec::new();
+        for cell in layers.start * layer..layers.end * layer {
+            ranges.clear();
+            let place = [cell / layer, cell / n_columns % n_rows, cell % n_columns];
+            grid.forward_ranges(place, |range| ranges.push(range));
+            for i in grid.first[cell]..grid.first[cell + 1] {
+                let sphere = &spheres[i as usize];
+                let mut seek = |range: std::ops::Range<u32>| {
+                    for j in range {
+                        let other = &spheres[j as usize];
+                        let reach = sphere.radius + other.radius + skin;
+                        if period.nearest(sphere.position - other.position).norm_squared() < reach * reach {
+                            pairs.push([i, j]);
+                        }
+                    }
+                };
+                seek(i + 1..grid.first[cell + 1]);
+                ranges.iter().cloned().for_each(&mut seek);
+                rows.push(pairs.len() as u32);
+            }
+        }
+        pairs.shrink_to_fit();
+        let memory = vec![M::default(); pairs.len()];
+        let touched = vec![0; pairs.len().div_ceil(64)];
+        Self { first_grain, rows, pairs, memory, touched, scalar: std::marker::PhantomData }
+    }
+
+    /// Number of grains.
+    pub fn n_grains(&self) -> usize {
+        self.rows.len() - 1
+    }
+
+    /// The slab's grains (sorted order).
+    pub fn grains(&self) -> std::ops::Range<u32> {
+        self.first_grain..self.first_grain + self.n_grains() as u32
+    }
+
+    /// Place of the pair (i, j) of a grain `i` of this slab.
+    pub fn find(&self, i: u32, j: u32) -> Option<usize> {
+        let row = (i - self.first_grain) as usize;
+        let (from, to) = (self.rows[row] as usize, self.rows[row + 1] as usize);
+        (from..to).find(|&place| self.pairs[place][1] == j)
+    }
+
+    /// The pair at `place` touched at the last force pass.
+    pub fn has_touched(&self, place: usize) -> bool {
+        self.touched[place / 64] >> (place % 64) & 1 == 1
+    }
+
+    /// Number of pairs that touched at the last force pass.
+    pub fn n_touching(&self) -> usize {
+        self.touched.iter().map(|word| word.count_ones() as usize).sum()
+    }
+
+    /// Memory held by this slab [bytes].
+    pub fn bytes(&self) -> usize {
+        4 * self.rows.capacity()
+            + 8 * self.pairs.capacity()
+            + size_of::<M>() * self.memory.capacity()
+            + 8 * self.touched.capacity()
+    }
+}
+
+/// Splits `n_layers` cell layers into slabs of about `wanted` grains; an even number of them (or one) along a period.
+pub(crate) fn layers_of_slabs(grid: &CellGrid, wanted: usize) -> Vec<std::ops::Range<usize>> {
+    let n_layers = grid.counts[0];
+    let n_grains = *grid.first.last().unwrap_or(&0) as usize;
+    let mut n_slabs = (n_grains / wanted).clamp(1, n_layers);
+    if grid.is_slab_axis_periodic() && n_slabs > 1 {
+        n_slabs -= n_slabs % 2;
+    }
+    (0..n_slabs).map(|s| s * n_layers / n_slabs..(s + 1) * n_layers / n_slabs).collect()
+}
