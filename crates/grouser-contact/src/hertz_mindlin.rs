@@ -44,12 +44,27 @@ impl<T: Real, const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> ContactLaw<
         let tangential_velocity = velocity - normal * normal_velocity;
         let turned = spring - normal * normal.dot(spring);
         let turned = turned + normal.cross(turned) * (contact.normal_spin * time_step);
-        let stretched = turned * kept_share::<T, TOTAL_DISPLACEMENT>(overlap, normal_velocity, time_step)
-            + tangential_velocity * time_step;
         let tangential_stiffness = pair.tangential_modulus * contact_radius;
         let tangential_dashpot = pair.tangential_damping_ratio * dashpot;
-        let tangential =
-            mindlin(stretched, tangential_velocity, tangential_stiffness, tangential_dashpot, limit);
+        // While the load grows the *force* is kept, so the stretch shrinks by √(δ₀/δ), δ₀ being the overlap a step ago;
+        // while it falls the stretch is kept and the force falls with the contact radius. The root is taken as
+        // 2 δ₀/(δ₀ + δ): equal to first order in the step, and never larger, so that no step size yields energy.
+        let overlap_before = (overlap + normal_velocity * time_step).max(T::ZERO).min(overlap);
+        let both_overlaps = overlap_before + overlap;
+        // One division serves 1/(δ₀ + δ) and 1/k_t.
+        let inverse = T::ONE / (both_overlaps * tangential_stiffness);
+        let softness = both_overlaps * inverse;
+        let kept_share = (overlap_before + overlap_before) * (tangential_stiffness * inverse);
+        let kept = if TOTAL_DISPLACEMENT { turned } else { turned * kept_share };
+        let stretched = kept + tangential_velocity * time_step;
+        let tangential = mindlin(
+            stretched,
+            tangential_velocity,
+            tangential_stiffness,
+            softness,
+            tangential_dashpot,
+            limit,
+        );
 
         let half = T::from_f64(0.5);
         let spent = -tangential.force.dot(tangential_velocity);
@@ -62,15 +77,4 @@ impl<T: Real, const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> ContactLaw<
         };
         (Response { normal_force, tangential_force: tangential.force, energy }, tangential.spring)
     }
-}
-
-/// Share of the spring that the present step keeps: while the load grows the *force* is kept, so the stretch shrinks as
-/// the contact radius √(R* δ) grows; while the load falls the stretch is kept and the force falls with the radius.
-#[inline(always)]
-fn kept_share<T: Real, const TOTAL_DISPLACEMENT: bool>(overlap: T, normal_velocity: T, time_step: T) -> T {
-    if TOTAL_DISPLACEMENT {
-        return T::ONE;
-    }
-    let overlap_before = (overlap + normal_velocity * time_step).max(T::ZERO);
-    (overlap_before.min(overlap) / overlap).sqrt()
 }

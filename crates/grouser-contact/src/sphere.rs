@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// lines in double precision and one in mixed precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
-#[repr(C)]
+#[repr(C, align(32))]
 pub struct Sphere<P: Precision = F64> {
     /// Centre [m].
     pub position: Vector<P::Coordinate>,
@@ -24,11 +24,17 @@ pub struct Sphere<P: Precision = F64> {
 }
 
 impl<P: Precision> Sphere<P> {
+    /// Moment of inertia of the solid sphere over its mass, 2/5 r² [m²].
+    #[inline(always)]
+    pub fn inertia_per_mass(&self) -> P::Real {
+        let radius = P::Real::from_f64(self.radius.to_f64());
+        P::Real::from_f64(0.4) * radius * radius
+    }
+
     /// Moment of inertia of the solid sphere, 2/5 m r² [kg·m²].
     #[inline(always)]
     pub fn inertia(&self) -> P::Real {
-        let radius = P::Real::from_f64(self.radius.to_f64());
-        P::Real::from_f64(0.4) * self.mass * radius * radius
+        self.mass * self.inertia_per_mass()
     }
 
     /// Every number is finite.
@@ -40,7 +46,7 @@ impl<P: Precision> Sphere<P> {
 /// Force and torque on one body, about its centre, in the world frame; one cache line in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
-#[repr(C)]
+#[repr(C, align(32))]
 pub struct Load<T: Real = f64> {
     /// Force [N].
     pub force: Vector<T>,

@@ -1,12 +1,13 @@
 //! A bed of grains: everything that one step needs, and the step.
 
-use crate::force_pass::{InstructionSet, PassInput, SharedLoads, slab_forces};
-use crate::integrate::{Pace, correct, predict};
+use crate::force_pass::{InstructionSet, PassInput};
+use crate::integrate::{Motion, Pace, Stages, turn};
 use crate::neighbours::Neighbours;
+use crate::shared_grains::SharedGrains;
+use crate::sweep::sweep;
 use crate::{BedEnergy, BedError, ContactLedger, Domain, Failure, Grains, Plane, Rotation};
 use grouser_contact::{ContactLaw, F64, PairTable, Precision, Real, Sphere};
 use grouser_geometry::Vec3;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Overlap over the smaller radius beyond which Hertz's law says nothing.
@@ -68,9 +69,33 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     /// # Errors
     /// When the motion has become meaningless.
     pub fn step(&mut self, time_step: f64) -> Result<(), Failure> {
+        self.run(1, time_step, |_| Ok(()))
+    }
+
+    /// `n_steps` steps of `time_step` [s]; before the contacts of each one `tool_forces` adds the loads of tools.
+    /// The same bytes as that many single steps, in less time: grains are corrected and predicted in one go.
+    ///
+    /// # Errors
+    /// When the motion has become meaningless, or with the error of `tool_forces`.
+    pub fn run<E: From<Failure>>(
+        &mut self,
+        n_steps: u64,
+        time_step: f64,
+        mut tool_forces: impl FnMut(&mut Grains<P>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        if n_steps == 0 {
+            return Ok(());
+        }
         self.predict(time_step)?;
-        self.contact_forces(time_step);
-        self.correct(time_step);
+        for step in 1..=n_steps {
+            tool_forces(&mut self.grains)?;
+            if step < n_steps {
+                self.contact_forces_and_advance(time_step)?;
+            } else {
+                self.contact_forces(time_step);
+                self.correct(time_step);
+            }
+        }
         Ok(())
     }
 
@@ -79,62 +104,73 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     /// # Errors
     /// When a grain is not finite, overlaps too far, or left the box.
     pub fn predict(&mut self, time_step: f64) -> Result<(), Failure> {
-        if self.deepest > LARGEST_OVERLAP {
-            return Err(self.deepest_grain());
-        }
-        let Pace { fastest_squared, is_finite } =
-            predict(&mut self.grains, self.settings.rotation, time_step);
-        if !is_finite {
-            return Err(self.first_non_finite());
-        }
-        let travel = fastest_squared.sqrt() * time_step;
-        if self.neighbours.are_too_old(&self.grains, &self.settings.domain, travel) {
-            self.renew_lists()?;
-        }
-        Ok(())
+        let pace = self.motion(time_step, Stages::None).predict_all(&mut self.grains);
+        self.look_after(pace, time_step)
     }
 
     /// Adds the forces among grains and of planes.
     pub fn contact_forces(&mut self, time_step: f64) {
-        let input = PassInput {
-            spheres: &self.grains.spheres,
-            period: self.settings.domain.period(),
-            law: self.law,
-            table: &self.table,
-            time_step: P::Real::from_f64(time_step),
-        };
-        let loads = SharedLoads(self.grains.loads.as_mut_ptr(), self.grains.loads.len());
-        let planes = &self.settings.planes;
-        let (has_ledger, set) = (self.settings.has_ledger, self.set);
-        let lists = &mut self.neighbours;
-        let mut slabs: Vec<_> = lists.slabs.iter_mut().zip(&mut lists.plane_lists).collect();
-        let mut results = vec![(ContactLedger::default(), 0.0_f64); slabs.len()];
-        // Even slabs, then odd ones: no grain is written to by two slabs at once, and each sums in the same order.
-        for parity in 0..2 {
-            let turn = slabs.par_iter_mut().zip(&mut results).skip(parity).step_by(2);
-            turn.for_each(|((slab, plane_lists), (ledger, deepest))| {
-                (*ledger, *deepest) = slab_forces(slab, &input, loads, has_ledger, set);
-                for (list, plane) in plane_lists.iter_mut().zip(planes) {
-                    let (of_plane, depth) = list.forces(plane, &input, loads);
-                    *ledger += of_plane;
-                    *deepest = deepest.max(depth);
-                }
-            });
-        }
-        let mut pass = ContactLedger::default();
-        self.deepest = 0.0;
-        for (ledger, deepest) in results {
-            pass += ledger;
-            self.deepest = self.deepest.max(deepest);
-        }
-        if has_ledger {
-            self.ledger.record(&pass);
-        }
+        self.sweep(time_step, Stages::None);
     }
 
     /// Corrects the velocities with all loads added by now.
     pub fn correct(&mut self, time_step: f64) {
-        correct(&mut self.grains, self.settings.rotation, self.settings.gravity, time_step);
+        self.motion(time_step, Stages::None).correct_all(&mut self.grains);
+    }
+
+    /// [`Bed::contact_forces`], [`Bed::correct`] and [`Bed::predict`] in one sweep, for grains that are still in the cache.
+    /// Loads of tools must have been added before.
+    ///
+    /// # Errors
+    /// As [`Bed::predict`].
+    pub fn contact_forces_and_advance(&mut self, time_step: f64) -> Result<(), Failure> {
+        let pace = self.sweep(time_step, Stages::CorrectAndPredict);
+        self.look_after(pace, time_step)
+    }
+
+    fn motion(&self, time_step: f64, stages: Stages) -> Motion<P::Real> {
+        Motion::new(time_step, self.settings.gravity, self.settings.rotation, stages)
+    }
+
+    fn sweep(&mut self, time_step: f64, stages: Stages) -> Pace {
+        let motion = self.motion(time_step, stages);
+        let input = PassInput {
+            grains: SharedGrains::new(&mut self.grains),
+            shifts: self.settings.domain.period().shifts(),
+            law: self.law,
+            table: &self.table,
+            time_step: P::Real::from_f64(time_step),
+            has_ledger: self.settings.has_ledger,
+            set: self.set,
+        };
+        let Neighbours { slabs, is_ring, .. } = &mut self.neighbours;
+        let pace = sweep(slabs, *is_ring, &self.settings.planes, &input, &motion);
+        let mut pass = ContactLedger::default();
+        self.deepest = 0.0;
+        for slab in slabs {
+            pass += slab.sums.ledger;
+            self.deepest = self.deepest.max(slab.sums.deepest);
+        }
+        if self.settings.has_ledger {
+            self.ledger.record(&pass);
+        }
+        pace
+    }
+
+    /// What a predictor leaves to be done: orientations, the health of the motion, and the lists.
+    fn look_after(&mut self, pace: Pace, time_step: f64) -> Result<(), Failure> {
+        turn(&mut self.grains, time_step);
+        if !pace.is_finite {
+            return Err(self.first_non_finite());
+        }
+        if self.deepest > LARGEST_OVERLAP {
+            return Err(self.deepest_grain());
+        }
+        let travel = pace.fastest_squared.sqrt() * time_step;
+        if self.neighbours.are_too_old(&self.grains, &self.settings.domain, travel) {
+            self.renew_lists()?;
+        }
+        Ok(())
     }
 
     /// The grains.
@@ -167,7 +203,11 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     /// Touching pairs of the last force pass, as places in [`Grains::spheres`].
     pub fn contacts(&self) -> impl Iterator<Item = [u32; 2]> {
         self.neighbours.slabs.iter().flat_map(|slab| {
-            slab.pairs.iter().enumerate().filter(|(place, _)| slab.has_touched(*place)).map(|(_, &pair)| pair)
+            slab.pairs
+                .iter()
+                .enumerate()
+                .filter(|(place, _)| slab.has_touched(*place))
+                .map(|(_, pair)| pair.grains())
         })
     }
 
@@ -199,7 +239,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
 
     /// Force of the grains on plane `plane` at the last force pass [N].
     pub fn plane_force(&self, plane: usize) -> Vec3 {
-        self.neighbours.plane_lists.iter().map(|lists| lists[plane].force).sum()
+        self.neighbours.slabs.iter().filter_map(|slab| slab.planes.get(plane)).map(|list| list.force).sum()
     }
 
     /// Energies at this instant; contact terms are zero without a ledger.
@@ -244,7 +284,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         let mut worst = (0, 0.0);
         for [i, j] in self.contacts() {
             let (a, b) = (&spheres[i as usize], &spheres[j as usize]);
-            let distance = period.nearest(a.position - b.position).norm();
+            let distance = period.nearest(a.position - b.position).0.norm();
             let depth = ((a.radius + b.radius - distance) / a.radius.min(b.radius)).to_f64();
             if depth > worst.1 {
                 worst = (i as usize, depth);

@@ -29,10 +29,7 @@ impl Domain {
         let inverse = |axis: usize| {
             if self.is_periodic[axis] { C::from_f64(1.0 / size[axis]) } else { C::ZERO }
         };
-        Period {
-            length: Vector::new(length(0), length(1), length(2)),
-            inverse: Vector::new(inverse(0), inverse(1), inverse(2)),
-        }
+        Period { length: [0, 1, 2].map(length), inverse: [0, 1, 2].map(inverse) }
     }
 
     /// `position` moved into the box along periodic axes.
@@ -59,22 +56,32 @@ impl Domain {
     }
 }
 
-/// Nearest-image arithmetic; an open axis has length and inverse zero, and costs the same few operations.
+/// Nearest-image arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Period<C> {
-    length: Vector<C>,
-    inverse: Vector<C>,
+    length: [C; 3],
+    inverse: [C; 3],
 }
 
 impl<C: Real> Period<C> {
-    /// The shortest of the images of `difference`.
-    #[inline(always)]
-    pub fn nearest(&self, difference: Vector<C>) -> Vector<C> {
-        let image = |d: C, length: C, inverse: C| d - length * (d * inverse).round_ties_even();
-        Vector::new(
-            image(difference.x, self.length.x, self.inverse.x),
-            image(difference.y, self.length.y, self.inverse.y),
-            image(difference.z, self.length.z, self.inverse.z),
-        )
+    /// The shortest of the images of `difference`, and the number of that image.
+    pub fn nearest(&self, difference: Vector<C>) -> (Vector<C>, u32) {
+        let (mut difference, mut image, mut digit) = (difference.to_array(), 0, 1);
+        for axis in 0..3 {
+            let turns = (difference[axis] * self.inverse[axis]).round_ties_even();
+            difference[axis] -= self.length[axis] * turns;
+            image += digit * (turns.to_f64() as i32 + 1) as u32;
+            digit *= 3;
+        }
+        (difference.into(), image)
+    }
+
+    /// What to subtract from a difference to reach each image [m]; image numbers are those of [`Period::nearest`].
+    pub fn shifts(&self) -> [Vector<C>; 27] {
+        std::array::from_fn(|image| {
+            let turns = [image % 3, image / 3 % 3, image / 9];
+            let shift = |axis: usize| self.length[axis] * C::from_f64(turns[axis] as f64 - 1.0);
+            Vector::new(shift(0), shift(1), shift(2))
+        })
     }
 }

@@ -1,6 +1,7 @@
 //! Why a bed cannot be made.
 
 use crate::BedSettings;
+use crate::slab::MOST_GRAINS;
 use grouser_contact::{Precision, Real, Sphere};
 use thiserror::Error;
 
@@ -10,8 +11,8 @@ pub enum BedError {
     /// No grains.
     #[error("the bed has no grains; expected at least one (is the fill depth smaller than a grain?)")]
     Empty,
-    /// More grains than a 32-bit number counts.
-    #[error("the bed has {n} grains; expected fewer than 4 294 967 295")]
+    /// More grains than a pair can number.
+    #[error("the bed has {n} grains; expected fewer than 134 217 728")]
     TooMany {
         /// Number of grains.
         n: usize,
@@ -68,7 +69,7 @@ impl BedError {
         if spheres.is_empty() {
             return Err(Self::Empty);
         }
-        if u32::try_from(spheres.len()).is_err() {
+        if spheres.len() >= MOST_GRAINS {
             return Err(Self::TooMany { n: spheres.len() });
         }
         let mut largest = 0.0_f64;

@@ -5,39 +5,21 @@
 //! instructions; the results are added to the grains in list order. No fused multiply-add is used, so every
 //! instruction set gives the same bytes.
 
-use crate::domain::Period;
 use crate::ledger::ContactLedger;
-use crate::slab::Slab;
-use grouser_contact::{
-    BLOCK, Contact, ContactLaw, Lanes, Load, Memory, PairTable, Precision, Real, Sphere, Vector,
-};
+use crate::shared_grains::SharedGrains;
+use crate::slab::{Slab, SlabSums};
+use grouser_contact::{BLOCK, Contact, ContactLaw, Lanes, Memory, PairTable, Precision, Real, Vector};
 
 /// What a slab's pass needs beside the slab.
 pub(crate) struct PassInput<'a, P: Precision, L> {
-    pub spheres: &'a [Sphere<P>],
-    pub period: Period<P::Coordinate>,
+    pub grains: SharedGrains<P>,
+    /// Image number to shift [m].
+    pub shifts: [Vector<P::Coordinate>; 27],
     pub law: L,
     pub table: &'a PairTable<P::Real>,
     pub time_step: P::Real,
-}
-
-/// Loads of all grains, written to by one slab at a time for each grain (see [`crate::slab`]).
-#[derive(Clone, Copy)]
-pub(crate) struct SharedLoads<T: Real>(pub *mut Load<T>, pub usize);
-
-// SAFETY: slabs that run at the same time write to disjoint grains: all even ones, then all odd ones, each writing to
-// itself and its successor only.
-unsafe impl<T: Real> Send for SharedLoads<T> {}
-// SAFETY: as above.
-unsafe impl<T: Real> Sync for SharedLoads<T> {}
-
-impl<T: Real> SharedLoads<T> {
-    #[inline(always)]
-    pub fn add(&self, grain: u32, force: Vector<T>, torque: Vector<T>) {
-        debug_assert!((grain as usize) < self.1);
-        // SAFETY: lists hold grain numbers below the number of grains, and no other slab writes to this grain now.
-        unsafe { (*self.0.add(grain as usize)).add(force, torque) }
-    }
+    pub has_ledger: bool,
+    pub set: InstructionSet,
 }
 
 /// One component for each contact of a block. Inputs are overwritten by outputs where both have three components.
@@ -97,22 +79,19 @@ impl InstructionSet {
     }
 }
 
-/// Adds the forces of all touching pairs of `slab` to `loads`; returns energies and the deepest relative overlap.
+/// Adds the forces of all touching pairs of `slab` to its grains and those of the next slab.
 pub(crate) fn slab_forces<P: Precision, L: ContactLaw<P::Real>>(
     slab: &mut Slab<P::Real, L::Memory>,
     input: &PassInput<P, L>,
-    loads: SharedLoads<P::Real>,
-    has_ledger: bool,
-    set: InstructionSet,
-) -> (ContactLedger, f64) {
-    match set {
-        InstructionSet::Baseline => dispatch_ledger(slab, input, loads, has_ledger),
+) -> SlabSums {
+    match input.set {
+        InstructionSet::Baseline => dispatch_ledger(slab, input),
         // SAFETY: `detect` found the instructions on this machine.
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx2 => unsafe { slab_forces_avx2(slab, input, loads, has_ledger) },
+        InstructionSet::Avx2 => unsafe { slab_forces_avx2(slab, input) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx512 => unsafe { slab_forces_avx512(slab, input, loads, has_ledger) },
+        InstructionSet::Avx512 => unsafe { slab_forces_avx512(slab, input) },
     }
 }
 
@@ -121,10 +100,8 @@ pub(crate) fn slab_forces<P: Precision, L: ContactLaw<P::Real>>(
 fn slab_forces_avx2<P: Precision, L: ContactLaw<P::Real>>(
     slab: &mut Slab<P::Real, L::Memory>,
     input: &PassInput<P, L>,
-    loads: SharedLoads<P::Real>,
-    has_ledger: bool,
-) -> (ContactLedger, f64) {
-    dispatch_ledger(slab, input, loads, has_ledger)
+) -> SlabSums {
+    dispatch_ledger(slab, input)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -132,28 +109,23 @@ fn slab_forces_avx2<P: Precision, L: ContactLaw<P::Real>>(
 fn slab_forces_avx512<P: Precision, L: ContactLaw<P::Real>>(
     slab: &mut Slab<P::Real, L::Memory>,
     input: &PassInput<P, L>,
-    loads: SharedLoads<P::Real>,
-    has_ledger: bool,
-) -> (ContactLedger, f64) {
-    dispatch_ledger(slab, input, loads, has_ledger)
+) -> SlabSums {
+    dispatch_ledger(slab, input)
 }
 
 #[inline(always)]
 fn dispatch_ledger<P: Precision, L: ContactLaw<P::Real>>(
     slab: &mut Slab<P::Real, L::Memory>,
     input: &PassInput<P, L>,
-    loads: SharedLoads<P::Real>,
-    has_ledger: bool,
-) -> (ContactLedger, f64) {
-    if has_ledger { pass::<P, L, true>(slab, input, loads) } else { pass::<P, L, false>(slab, input, loads) }
+) -> SlabSums {
+    if input.has_ledger { pass::<P, L, true>(slab, input) } else { pass::<P, L, false>(slab, input) }
 }
 
 #[inline(always)]
 fn pass<P: Precision, L: ContactLaw<P::Real>, const LEDGER: bool>(
     slab: &mut Slab<P::Real, L::Memory>,
     input: &PassInput<P, L>,
-    loads: SharedLoads<P::Real>,
-) -> (ContactLedger, f64) {
+) -> SlabSums {
     let mut block = Block::<P::Real, L::Memory>::new(input.table);
     let mut waiting = [0_u32; 2 * BLOCK];
     let mut n_waiting = 0;
@@ -161,9 +133,9 @@ fn pass<P: Precision, L: ContactLaw<P::Real>, const LEDGER: bool>(
         let from = word * 64;
         let pairs = &slab.pairs[from..slab.pairs.len().min(from + 64)];
         let mut touching = 0_u64;
-        for (bit, &[i, j]) in pairs.iter().enumerate() {
-            let (first, second) = (&input.spheres[i as usize], &input.spheres[j as usize]);
-            let difference = input.period.nearest(first.position - second.position);
+        for (bit, pair) in pairs.iter().enumerate() {
+            let [first, second] = pair.grains().map(|grain| input.grains.sphere(grain));
+            let difference = first.position - second.position - input.shifts[pair.image()];
             let reach = first.radius + second.radius;
             let touches = difference.norm_squared() < reach * reach;
             touching |= u64::from(touches) << bit;
@@ -178,12 +150,12 @@ fn pass<P: Precision, L: ContactLaw<P::Real>, const LEDGER: bool>(
         }
         slab.touched[word] = touching;
         if n_waiting >= BLOCK {
-            block.work::<P, L, LEDGER>(&waiting[..BLOCK], slab, input, loads);
+            block.work::<P, L, LEDGER>(&waiting[..BLOCK], slab, input);
             waiting.copy_within(BLOCK..n_waiting, 0);
             n_waiting -= BLOCK;
         }
     }
-    block.work::<P, L, LEDGER>(&waiting[..n_waiting], slab, input, loads);
+    block.work::<P, L, LEDGER>(&waiting[..n_waiting], slab, input);
     block.totals(input.time_step)
 }
 
@@ -230,14 +202,13 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
         places: &[u32],
         slab: &mut Slab<T, M>,
         input: &PassInput<P, L>,
-        loads: SharedLoads<T>,
     ) {
         self.gather(places, slab, input);
         // Groups of 16 lanes: a constant trip count that every vector width divides.
         for group in 0..places.len().div_ceil(16) {
             self.respond::<L, LEDGER>(group * 16, places.len(), &input.law, input.time_step);
         }
-        self.scatter(places, slab, loads);
+        self.scatter(places, slab, input.grains);
     }
 
     #[inline(always)]
@@ -249,9 +220,9 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
     ) {
         let has_materials = input.table.n_materials() > 1;
         for (k, &place) in places.iter().enumerate() {
-            let [i, j] = slab.pairs[place as usize];
-            let (first, second) = (&input.spheres[i as usize], &input.spheres[j as usize]);
-            let difference = input.period.nearest(first.position - second.position);
+            let pair = slab.pairs[place as usize];
+            let [first, second] = pair.grains().map(|grain| input.grains.sphere(grain));
+            let difference = first.position - second.position - input.shifts[pair.image()];
             let reach = first.radius + second.radius;
             let narrow = |c: P::Coordinate| T::from_f64(c.to_f64());
             self.excess.0[k] = narrow(reach * reach - difference.norm_squared());
@@ -351,20 +322,25 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
     }
 
     #[inline(always)]
-    fn scatter(&mut self, places: &[u32], slab: &mut Slab<T, M>, loads: SharedLoads<T>) {
+    fn scatter<P: Precision<Real = T>>(
+        &mut self,
+        places: &[u32],
+        slab: &mut Slab<T, M>,
+        grains: SharedGrains<P>,
+    ) {
         for (k, &place) in places.iter().enumerate() {
-            let [i, j] = slab.pairs[place as usize];
+            let [i, j] = slab.pairs[place as usize].grains();
             slab.memory[place as usize] = M::load(&self.memory, k);
             let [fx, fy, fz] = &self.difference;
             let force = Vector::new(fx.0[k], fy.0[k], fz.0[k]);
             let [cx, cy, cz] = &self.velocity;
             let couple = -Vector::new(cx.0[k], cy.0[k], cz.0[k]);
-            loads.add(i, force, couple * self.arm[0].0[k]);
-            loads.add(j, -force, couple * self.arm[1].0[k]);
+            grains.add_load(i, force, couple * self.arm[0].0[k]);
+            grains.add_load(j, -force, couple * self.arm[1].0[k]);
         }
     }
 
-    fn totals(&self, time_step: T) -> (ContactLedger, f64) {
+    fn totals(&self, time_step: T) -> SlabSums {
         let total = |lanes: &Lanes<T>| lanes.0.iter().map(|value| value.to_f64()).sum::<f64>();
         let dt = time_step.to_f64();
         let [normal_elastic, tangential_elastic, normal_damping, tangential, sliding] = &self.ledger;
@@ -377,6 +353,6 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
             ..Default::default()
         };
         let deepest = self.deepest.0.iter().fold(0.0, |most, depth| depth.to_f64().max(most));
-        (ledger, deepest)
+        SlabSums { ledger, deepest }
     }
 }

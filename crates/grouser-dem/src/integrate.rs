@@ -4,18 +4,10 @@
 //! The usual half-step form evaluates dashpots with a velocity half a step old, which sticks at size ratios above three.
 
 use crate::grains::{Grains, Rotation};
+use crate::shared_grains::SharedGrains;
 use grouser_contact::{Load, Precision, Real, Sphere, Vector};
 use grouser_geometry::{Orientation, Vec3};
-use rayon::prelude::*;
-
-/// Grains that one task works on.
-const CHUNK: usize = 1024;
-
-/// Spheres, loads and accelerations of the same grains.
-type Chunk<'a, P> = (
-    (&'a mut [Sphere<P>], &'a mut [Load<<P as Precision>::Real>]),
-    &'a mut [[Vector<<P as Precision>::Real>; 2]],
-);
+use std::ops::Range;
 
 /// Fastest grain seen by a predictor, and whether every number was finite.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +17,11 @@ pub(crate) struct Pace {
 }
 
 impl Pace {
-    fn slower(self, other: Self) -> Self {
+    /// Of no grains.
+    pub const STILL: Self = Self { fastest_squared: 0.0, is_finite: true };
+
+    /// Of two sets of grains; the order does not matter.
+    pub fn and(self, other: Self) -> Self {
         Self {
             fastest_squared: self.fastest_squared.max(other.fastest_squared),
             is_finite: self.is_finite && other.is_finite,
@@ -33,71 +29,130 @@ impl Pace {
     }
 }
 
-/// Moves every grain to the end of the step, predicts its velocity there, and clears its load.
-pub(crate) fn predict<P: Precision>(grains: &mut Grains<P>, rotation: Rotation, time_step: f64) -> Pace {
-    let dt = P::Real::from_f64(time_step);
-    let half = P::Real::from_f64(0.5);
-    let work = |((spheres, loads), accelerations): Chunk<P>| {
-        let (mut fastest, mut checksum) = (P::Real::ZERO, P::Real::ZERO);
-        for ((sphere, load), [linear, angular]) in spheres.iter_mut().zip(loads).zip(accelerations) {
-            let travel = (sphere.velocity + *linear * (half * dt)) * dt;
-            sphere.position += travel.cast();
-            sphere.velocity += *linear * dt;
-            if rotation == Rotation::Free {
-                sphere.spin += *angular * dt;
-            }
-            let speed = sphere.velocity.norm_squared();
-            fastest = fastest.max(speed);
-            checksum += (speed + sphere.spin.norm_squared()) * P::Real::ZERO;
-            *load = Load::default();
-        }
-        Pace { fastest_squared: fastest.to_f64(), is_finite: checksum == P::Real::ZERO }
-    };
-    let still = || Pace { fastest_squared: 0.0, is_finite: true };
-    let pace = grains
-        .spheres
-        .par_chunks_mut(CHUNK)
-        .zip(grains.loads.par_chunks_mut(CHUNK))
-        .zip(grains.accelerations.par_chunks_mut(CHUNK))
-        .map(work)
-        .reduce(still, Pace::slower);
-    if let Some(orientations) = &mut grains.orientations {
-        for (orientation, sphere) in orientations.iter_mut().zip(&grains.spheres) {
-            let spin = sphere.spin.cast::<f64>();
-            let turn = Orientation::from_scaled_axis(Vec3::new(spin.x, spin.y, spin.z) * time_step);
-            *orientation = turn * *orientation;
-            orientation.renormalize_fast();
-        }
-    }
-    pace
+/// Which halves of the scheme a grain goes through once its forces are known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stages {
+    /// None: somebody else will.
+    None,
+    /// Correct, then predict the next step.
+    CorrectAndPredict,
 }
 
-/// Corrects the velocities with the forces at the new positions; `gravity` is an acceleration [m/s²].
-pub(crate) fn correct<P: Precision>(
-    grains: &mut Grains<P>,
-    rotation: Rotation,
-    gravity: Vec3,
-    time_step: f64,
-) {
-    let half_step = P::Real::from_f64(0.5 * time_step);
-    let gravity = Vector::new(gravity.x, gravity.y, gravity.z).cast::<P::Real>();
-    let work = |((spheres, loads), accelerations): Chunk<P>| {
-        for ((sphere, load), [linear, angular]) in spheres.iter_mut().zip(loads).zip(accelerations) {
-            let inverse_mass = P::Real::ONE / sphere.mass;
-            let after = load.force * inverse_mass + gravity;
-            sphere.velocity += (after - *linear) * half_step;
-            *linear = after;
-            if rotation == Rotation::Free {
-                let after = load.torque * (P::Real::ONE / sphere.inertia());
-                sphere.spin += (after - *angular) * half_step;
-                *angular = after;
-            }
+/// The motion of grains between two force passes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion<T> {
+    pub time_step: T,
+    pub gravity: Vector<T>,
+    pub rotation: Rotation,
+    pub stages: Stages,
+}
+
+impl<T: Real> Motion<T> {
+    /// Motion with a step [s] under gravity [m/s²].
+    pub fn new(time_step: f64, gravity: Vec3, rotation: Rotation, stages: Stages) -> Self {
+        let gravity = Vector::new(gravity.x, gravity.y, gravity.z).cast();
+        Self { time_step: T::from_f64(time_step), gravity, rotation, stages }
+    }
+
+    /// The stages that follow the force pass, for a range of grains.
+    pub fn advance<P: Precision<Real = T>>(&self, grains: SharedGrains<P>, range: Range<u32>) -> Pace {
+        if self.stages == Stages::None {
+            return Pace::STILL;
         }
-    };
-    grains
-        .spheres
-        .par_chunks_mut(CHUNK)
-        .zip(grains.loads.par_chunks_mut(CHUNK))
-        .zip(grains.accelerations.par_chunks_mut(CHUNK))
-        .for_each(work);
+        let (spheres, loads, accelerations) = grains.range(range);
+        let mut watch = Watch::default();
+        for ((sphere, load), acceleration) in spheres.iter_mut().zip(loads).zip(accelerations) {
+            self.correct(sphere, load, acceleration);
+            self.predict(sphere, load, acceleration, &mut watch);
+        }
+        watch.pace()
+    }
+
+    /// Corrects all grains.
+    pub fn correct_all<P: Precision<Real = T>>(&self, grains: &mut Grains<P>) {
+        let Grains { spheres, loads, accelerations, .. } = grains;
+        for ((sphere, load), acceleration) in spheres.iter_mut().zip(loads).zip(accelerations) {
+            self.correct(sphere, load, acceleration);
+        }
+    }
+
+    /// Predicts all grains and clears their loads.
+    pub fn predict_all<P: Precision<Real = T>>(&self, grains: &mut Grains<P>) -> Pace {
+        let Grains { spheres, loads, accelerations, .. } = grains;
+        let mut watch = Watch::default();
+        for ((sphere, load), acceleration) in spheres.iter_mut().zip(loads).zip(accelerations) {
+            self.predict(sphere, load, acceleration, &mut watch);
+        }
+        watch.pace()
+    }
+
+    #[inline(always)]
+    fn correct<P: Precision<Real = T>>(
+        &self,
+        sphere: &mut Sphere<P>,
+        load: &Load<T>,
+        [linear, angular]: &mut [Vector<T>; 2],
+    ) {
+        let half_step = T::from_f64(0.5) * self.time_step;
+        // One division serves 1/m and 1/J = 1/(2/5 m r²).
+        let inertia_per_mass = sphere.inertia_per_mass();
+        let inverse = T::ONE / (sphere.mass * inertia_per_mass);
+        let after = load.force * (inverse * inertia_per_mass) + self.gravity;
+        sphere.velocity += (after - *linear) * half_step;
+        *linear = after;
+        if self.rotation == Rotation::Free {
+            let after = load.torque * inverse;
+            sphere.spin += (after - *angular) * half_step;
+            *angular = after;
+        }
+    }
+
+    #[inline(always)]
+    fn predict<P: Precision<Real = T>>(
+        &self,
+        sphere: &mut Sphere<P>,
+        load: &mut Load<T>,
+        [linear, angular]: &mut [Vector<T>; 2],
+        watch: &mut Watch<T>,
+    ) {
+        let dt = self.time_step;
+        let travel = (sphere.velocity + *linear * (T::from_f64(0.5) * dt)) * dt;
+        sphere.position += travel.cast();
+        sphere.velocity += *linear * dt;
+        if self.rotation == Rotation::Free {
+            sphere.spin += *angular * dt;
+        }
+        *load = Load::default();
+        watch.see(sphere.velocity.norm_squared(), sphere.spin.norm_squared());
+    }
+}
+
+/// Turns the orientations by one step of the present spins.
+pub(crate) fn turn<P: Precision>(grains: &mut Grains<P>, time_step: f64) {
+    let Some(orientations) = &mut grains.orientations else { return };
+    for (orientation, sphere) in orientations.iter_mut().zip(&grains.spheres) {
+        let spin = sphere.spin.cast::<f64>();
+        let turn = Orientation::from_scaled_axis(Vec3::new(spin.x, spin.y, spin.z) * time_step);
+        *orientation = turn * *orientation;
+        orientation.renormalize_fast();
+    }
+}
+
+/// Keeps an eye on the fastest grain; 0 × x is NaN for every x that is not finite.
+#[derive(Default)]
+struct Watch<T> {
+    fastest_squared: T,
+    checksum: T,
+}
+
+impl<T: Real> Watch<T> {
+    #[inline(always)]
+    fn see(&mut self, speed_squared: T, spin_squared: T) {
+        self.fastest_squared = speed_squared.max(self.fastest_squared);
+        self.checksum += (speed_squared + spin_squared) * T::ZERO;
+    }
+
+    fn pace(&self) -> Pace {
+        Pace { fastest_squared: self.fastest_squared.to_f64(), is_finite: self.checksum == T::ZERO }
+    }
 }

@@ -48,7 +48,9 @@ mod neighbours;
 mod packing;
 mod plane;
 mod settle;
+mod shared_grains;
 mod slab;
+mod sweep;
 mod time_step;
 
 pub use bed::{Bed, BedSettings, LARGEST_OVERLAP};

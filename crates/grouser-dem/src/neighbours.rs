@@ -18,8 +18,8 @@ const REBUILD_COST: f64 = 80.0;
 #[serde(bound = "M: Memory<P::Real>")]
 pub(crate) struct Neighbours<P: Precision, M> {
     pub slabs: Vec<Slab<P::Real, M>>,
-    /// Grains near each plane, slab by slab.
-    pub plane_lists: Vec<Vec<PlaneList<P::Real, M>>>,
+    /// The last slab's pairs end in the first one.
+    pub is_ring: bool,
     /// Gap up to which a pair is listed [m].
     skin: f64,
     /// Upper bound of what any grain has moved since the lists were made [m].
@@ -36,7 +36,7 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
     pub fn new(smallest_radius: f64) -> Self {
         Self {
             slabs: Vec::new(),
-            plane_lists: Vec::new(),
+            is_ring: false,
             skin: 0.2 * smallest_radius,
             moved: f64::INFINITY,
             reference: Vec::new(),
@@ -64,7 +64,7 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
         let period = domain.period::<P::Coordinate>();
         let farthest =
             grains.spheres.iter().zip(&self.reference).fold(P::Coordinate::ZERO, |most, (sphere, &old)| {
-                period.nearest(sphere.position - old).norm_squared().max(most)
+                period.nearest(sphere.position - old).0.norm_squared().max(most)
             });
         self.moved = farthest.to_f64().sqrt();
         // Look again before half of what is left can be used up; a list about to expire is made anew at once.
@@ -88,19 +88,15 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
             .collect();
         let old = Lookup::new(&self.slabs, spheres.len());
         slabs.par_iter_mut().for_each(|slab| old.carry_over(slab, &order));
-        let plane_lists = slabs
-            .iter()
-            .map(|slab| {
-                let list = |(index, plane)| {
-                    let remembered =
-                        |grain: u32| old.plane_memory(&self.plane_lists, index, order[grain as usize]);
-                    PlaneList::build(plane, slab.grains(), spheres, self.skin, remembered)
-                };
-                planes.iter().enumerate().map(list).collect()
-            })
-            .collect();
+        for slab in &mut slabs {
+            let list = |(index, plane)| {
+                let remembered = |grain: u32| old.plane_memory(index, order[grain as usize]);
+                PlaneList::build(plane, slab.grains(), spheres, self.skin, remembered)
+            };
+            slab.planes = planes.iter().enumerate().map(list).collect();
+        }
         self.slabs = slabs;
-        self.plane_lists = plane_lists;
+        self.is_ring = grid.is_slab_axis_periodic() && self.slabs.len() > 1;
         self.reference.clear();
         self.reference.extend(grains.spheres.iter().map(|sphere| sphere.position));
         self.moved = 0.0;
@@ -161,15 +157,15 @@ impl<'a, T: Real, M: Memory<T>> Lookup<'a, T, M> {
     }
 
     /// What old grain `grain` remembers of plane `plane`.
-    fn plane_memory(&self, lists: &[Vec<PlaneList<T, M>>], plane: usize, grain: u32) -> M {
-        let list = self.slab_of.get(grain as usize).and_then(|&slab| lists.get(slab as usize)?.get(plane));
-        list.and_then(|list| list.memory_of(grain)).unwrap_or_default()
+    fn plane_memory(&self, plane: usize, grain: u32) -> M {
+        let slab = self.slab_of.get(grain as usize).map(|&slab| &self.slabs[slab as usize]);
+        slab.and_then(|slab| slab.planes.get(plane)?.memory_of(grain)).unwrap_or_default()
     }
 
     /// Fills the memory of a new slab; `order[new]` is the old number of a grain.
     fn carry_over(&self, slab: &mut Slab<T, M>, order: &[u32]) {
         for place in 0..slab.pairs.len() {
-            let [i, j] = slab.pairs[place];
+            let [i, j] = slab.pairs[place].grains();
             if let Some(memory) = self.memory(order[i as usize], order[j as usize]) {
                 slab.memory[place] = memory;
                 slab.touched[place / 64] |= 1 << (place % 64);

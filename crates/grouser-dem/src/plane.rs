@@ -1,8 +1,9 @@
 //! Analytic planes: floors and side walls.
 
+use crate::ContactLedger;
 use crate::cell_grid::to_f64;
-use crate::force_pass::{PassInput, SharedLoads};
-use crate::ledger::ContactLedger;
+use crate::force_pass::PassInput;
+use crate::slab::SlabSums;
 use grouser_contact::{Contact, ContactLaw, Memory, Precision, Real, Sphere, Vector};
 use grouser_geometry::Vec3;
 use serde::{Deserialize, Serialize};
@@ -62,22 +63,21 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
         self.grains.binary_search(&grain).ok().map(|place| self.memory[place])
     }
 
-    /// Adds the plane's forces to the grains; returns energies and the deepest relative overlap.
+    /// Adds the plane's forces to the grains.
     ///
     /// The plane is rigid: R* and m* are those of the grain, and the contact point lies on the surface.
     pub fn forces<P: Precision<Real = T>, L: ContactLaw<T, Memory = M>>(
         &mut self,
         plane: &Plane,
         input: &PassInput<P, L>,
-        loads: SharedLoads<T>,
-    ) -> (ContactLedger, f64) {
+    ) -> SlabSums {
         let (mut total, mut ledger, mut deepest) = (Vector::<f64>::ZERO, ContactLedger::default(), 0.0_f64);
         let dt = input.time_step.to_f64();
         let normal = Vector::new(plane.normal.x, plane.normal.y, plane.normal.z).cast::<T>();
         for (&grain, memory) in self.grains.iter().zip(&mut self.memory) {
-            let sphere = &input.spheres[grain as usize];
+            let sphere = *input.grains.sphere(grain);
             let radius = sphere.radius.to_f64();
-            let overlap = radius - plane.height(to_f64(sphere));
+            let overlap = radius - plane.height(to_f64(&sphere));
             if overlap <= 0.0 {
                 *memory = M::default();
                 continue;
@@ -97,7 +97,7 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
             let (response, remembered) = input.law.respond(&contact, pair, *memory);
             *memory = remembered;
             let force = normal * response.normal_force + response.tangential_force;
-            loads.add(grain, force, normal.cross(response.tangential_force) * -arm);
+            input.grains.add_load(grain, force, normal.cross(response.tangential_force) * -arm);
             total -= force.cast();
             let energy = response.energy;
             ledger += ContactLedger {
@@ -110,6 +110,6 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
             };
         }
         self.force = Vec3::new(total.x, total.y, total.z);
-        (ledger, deepest)
+        SlabSums { ledger, deepest }
     }
 }

@@ -38,7 +38,6 @@ pub struct Settled {
 pub struct Settling {
     criterion: SettleCriterion,
     n_steps: u64,
-    /// Kinetic energy may pass through a lull before the first grains land: it counts once the bed carries itself.
     time_step: f64,
 }
 
@@ -64,9 +63,7 @@ impl Settling {
         &mut self,
         bed: &mut Bed<L, P>,
     ) -> Result<Option<Settled>, Failure> {
-        for _ in 0..STEPS_PER_LOOK {
-            bed.step(self.time_step)?;
-        }
+        bed.run(STEPS_PER_LOOK, self.time_step, |_| Ok::<(), Failure>(()))?;
         self.n_steps += STEPS_PER_LOOK;
         let ratio = kinetic_energy_ratio(bed);
         // Touching grains carry each other: fewer than one contact a grain means that the bed is still falling.

@@ -1,13 +1,44 @@
 //! A slab of the sorted bed: the grains of some cell layers and the pairs that start there.
 //!
-//! A pair that starts in slab s ends in s or in s + 1. So all even slabs can be worked on at once, and then all odd
-//! ones, without two of them ever writing to one grain; and every grain sums its forces in the same order whatever the
-//! number of threads.
+//! A pair that starts in slab s ends in s or in s + 1, so a grain of slab s receives forces from the passes over s − 1
+//! and over s alone. The order in which slabs are worked on is the matter of [`crate::sweep`].
 
+use crate::ContactLedger;
 use crate::cell_grid::CellGrid;
 use crate::domain::Period;
+use crate::plane::PlaneList;
 use grouser_contact::{Memory, Precision, Real, Sphere};
 use serde::{Deserialize, Serialize};
+
+/// Two grains that may touch: the first one, and the second one together with the periodic image that is near.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Pair {
+    first: u32,
+    second_and_image: u32,
+}
+
+/// Bits that number a grain; the other five number one of 27 images.
+const GRAIN_BITS: u32 = 27;
+/// One more than the largest number of a grain.
+pub(crate) const MOST_GRAINS: usize = 1 << GRAIN_BITS;
+
+impl Pair {
+    fn new(first: u32, second: u32, image: u32) -> Self {
+        Self { first, second_and_image: second | image << GRAIN_BITS }
+    }
+
+    /// The two grains (sorted order).
+    #[inline(always)]
+    pub fn grains(self) -> [u32; 2] {
+        [self.first, self.second_and_image & (MOST_GRAINS as u32 - 1)]
+    }
+
+    /// Number of the image of the second grain that is near.
+    #[inline(always)]
+    pub fn image(self) -> usize {
+        (self.second_and_image >> GRAIN_BITS) as usize
+    }
+}
 
 /// Pairs of one slab, with the memory of each.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -18,13 +49,24 @@ pub(crate) struct Slab<T: Real, M> {
     /// First pair of each grain of the slab; one more entry than grains.
     pub rows: Vec<u32>,
     /// Grains that may touch before the next rebuild, by rising first grain.
-    pub pairs: Vec<[u32; 2]>,
+    pub pairs: Vec<Pair>,
     /// What each pair remembers; zero where it does not touch.
     pub memory: Vec<M>,
     /// One bit a pair, 64 pairs a word: it touched at the last force pass.
     pub touched: Vec<u64>,
-    #[serde(skip)]
-    scalar: std::marker::PhantomData<T>,
+    /// Grains of the slab near each plane.
+    pub planes: Vec<PlaneList<T, M>>,
+    /// What the last force pass summed up.
+    pub sums: SlabSums,
+}
+
+/// Sums of one force pass over one slab.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SlabSums {
+    /// Energies of the slab's contacts.
+    pub ledger: ContactLedger,
+    /// Largest overlap over the smaller radius [-].
+    pub deepest: f64,
 }
 
 impl<T: Real, M: Memory<T>> Slab<T, M> {
@@ -52,8 +94,9 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
                     for j in range {
                         let other = &spheres[j as usize];
                         let reach = sphere.radius + other.radius + skin;
-                        if period.nearest(sphere.position - other.position).norm_squared() < reach * reach {
-                            pairs.push([i, j]);
+                        let (difference, image) = period.nearest(sphere.position - other.position);
+                        if difference.norm_squared() < reach * reach {
+                            pairs.push(Pair::new(i, j, image));
                         }
                     }
                 };
@@ -65,7 +108,7 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
         pairs.shrink_to_fit();
         let memory = vec![M::default(); pairs.len()];
         let touched = vec![0; pairs.len().div_ceil(64)];
-        Self { first_grain, rows, pairs, memory, touched, scalar: std::marker::PhantomData }
+        Self { first_grain, rows, pairs, memory, touched, planes: Vec::new(), sums: SlabSums::default() }
     }
 
     /// Number of grains.
@@ -82,7 +125,7 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
     pub fn find(&self, i: u32, j: u32) -> Option<usize> {
         let row = (i - self.first_grain) as usize;
         let (from, to) = (self.rows[row] as usize, self.rows[row + 1] as usize);
-        (from..to).find(|&place| self.pairs[place][1] == j)
+        (from..to).find(|&place| self.pairs[place].grains()[1] == j)
     }
 
     /// The pair at `place` touched at the last force pass.

@@ -38,6 +38,7 @@ pub fn mindlin<T: Real>(
     spring: Vector<T>,
     velocity: Vector<T>,
     stiffness: T,
+    softness: T,
     dashpot: T,
     limit: T,
 ) -> Tangential<T> {
@@ -47,7 +48,6 @@ pub fn mindlin<T: Real>(
     let share = if is_sliding { limit / trial_squared.sqrt() } else { T::ONE };
     let force = trial * share;
     // While sliding the spring holds the whole limit; the dashpot has no say beyond it.
-    let softness = T::ONE / stiffness;
     let cut = -(force * softness);
     let choose = |a: T, b: T| if is_sliding { a } else { b };
     let spring = Vector::new(choose(cut.x, spring.x), choose(cut.y, spring.y), choose(cut.z, spring.z));
@@ -61,10 +61,10 @@ mod tests {
     #[test]
     fn a_sticking_spring_keeps_its_stretch_and_a_sliding_one_holds_the_limit() {
         let spring = Vector::new(3e-6, 4e-6, 0.0);
-        let stuck = mindlin(spring, Vector::ZERO, 1e6, 0.0, 6.0);
+        let stuck = mindlin(spring, Vector::ZERO, 1e6, 1e-6, 0.0, 6.0);
         assert!(!stuck.is_sliding && stuck.spring == spring);
         assert!((stuck.force.norm() - 5.0_f64).abs() < 1e-12);
-        let slid = mindlin(spring, Vector::ZERO, 1e6, 0.0, 2.0);
+        let slid = mindlin(spring, Vector::ZERO, 1e6, 1e-6, 0.0, 2.0);
         assert!(slid.is_sliding);
         assert!((slid.force + Vector::new(1.2, 1.6, 0.0)).norm() < 1e-12);
         assert!((slid.spring.norm() - 2e-6_f64).abs() < 1e-18);
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn the_dashpot_is_inside_the_coulomb_limit_and_opposes_the_motion() {
-        let slid = mindlin(Vector::ZERO, Vector::new(2.0, 0.0, 0.0), 1e6, 10.0, 3.0);
+        let slid = mindlin(Vector::ZERO, Vector::new(2.0, 0.0, 0.0), 1e6, 1e-6, 10.0, 3.0);
         assert!(slid.is_sliding);
         assert!((slid.force - Vector::new(-3.0, 0.0, 0.0)).norm() < 1e-12_f64);
     }

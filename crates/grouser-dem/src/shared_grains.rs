@@ -1,0 +1,68 @@
+//! Grains that several slabs work on at once.
+
+use crate::Grains;
+use grouser_contact::{Load, Precision, Sphere, Vector};
+
+/// The arrays of a bed, seen by all threads of a sweep. Which grains a thread may touch is the matter of
+/// [`crate::sweep`]; this type only makes the promise short to write.
+#[derive(Clone, Copy)]
+pub(crate) struct SharedGrains<P: Precision> {
+    spheres: *mut Sphere<P>,
+    loads: *mut Load<P::Real>,
+    accelerations: *mut [Vector<P::Real>; 2],
+    n: usize,
+}
+
+// SAFETY: a sweep lets no two threads work on one grain at a time (see `crate::sweep`).
+unsafe impl<P: Precision> Send for SharedGrains<P> {}
+// SAFETY: as above.
+unsafe impl<P: Precision> Sync for SharedGrains<P> {}
+
+impl<P: Precision> SharedGrains<P> {
+    /// The arrays of `grains`, which stay borrowed as long as the sweep lasts.
+    pub fn new(grains: &mut Grains<P>) -> Self {
+        let n = grains.spheres.len();
+        assert!(grains.loads.len() == n && grains.accelerations.len() == n);
+        Self {
+            spheres: grains.spheres.as_mut_ptr(),
+            loads: grains.loads.as_mut_ptr(),
+            accelerations: grains.accelerations.as_mut_ptr(),
+            n,
+        }
+    }
+
+    /// One grain.
+    #[inline(always)]
+    pub fn sphere(&self, grain: u32) -> &Sphere<P> {
+        debug_assert!((grain as usize) < self.n);
+        // SAFETY: lists hold numbers below the number of grains, and no thread moves this grain now.
+        unsafe { &*self.spheres.add(grain as usize) }
+    }
+
+    /// Adds a force and a torque to one grain.
+    #[inline(always)]
+    pub fn add_load(&self, grain: u32, force: Vector<P::Real>, torque: Vector<P::Real>) {
+        debug_assert!((grain as usize) < self.n);
+        // SAFETY: as above, and no other thread writes to this grain now.
+        unsafe { (*self.loads.add(grain as usize)).add(force, torque) }
+    }
+
+    /// Everything about the grains of a range.
+    #[expect(clippy::mut_from_ref, reason = "exclusive access to the range is the promise of the sweep")]
+    #[expect(clippy::type_complexity, reason = "three parallel slices")]
+    pub fn range(
+        &self,
+        range: std::ops::Range<u32>,
+    ) -> (&mut [Sphere<P>], &mut [Load<P::Real>], &mut [[Vector<P::Real>; 2]]) {
+        let (from, n) = (range.start as usize, range.len());
+        assert!(from + n <= self.n);
+        // SAFETY: the range lies inside the arrays, and no other thread looks at these grains now.
+        unsafe {
+            (
+                std::slice::from_raw_parts_mut(self.spheres.add(from), n),
+                std::slice::from_raw_parts_mut(self.loads.add(from), n),
+                std::slice::from_raw_parts_mut(self.accelerations.add(from), n),
+            )
+        }
+    }
+}
