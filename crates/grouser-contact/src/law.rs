@@ -76,6 +76,13 @@ pub trait Memory<T: Real>:
     fn seen_from_the_other(self) -> Self;
     /// Puts this memory into place `k` of a block.
     fn store(self, block: &mut Self::Block, k: usize);
+    /// Puts four memories into places `k..k + 4` of a block.
+    #[inline(always)]
+    fn store_four(four: [Self; 4], block: &mut Self::Block, k: usize) {
+        for (n, memory) in four.into_iter().enumerate() {
+            memory.store(block, k + n);
+        }
+    }
     /// The memory at place `k` of a block.
     fn load(block: &Self::Block, k: usize) -> Self;
 }
@@ -112,6 +119,12 @@ impl<T: Real> Memory<T> for Vector<T> {
         block[0].0[k] = self.x;
         block[1].0[k] = self.y;
         block[2].0[k] = self.z;
+    }
+    #[inline(always)]
+    fn store_four(four: [Self; 4], block: &mut Self::Block, k: usize) {
+        block[0].0[k..k + 4].copy_from_slice(&four.map(|memory| memory.x));
+        block[1].0[k..k + 4].copy_from_slice(&four.map(|memory| memory.y));
+        block[2].0[k..k + 4].copy_from_slice(&four.map(|memory| memory.z));
     }
     #[inline(always)]
     fn load(block: &Self::Block, k: usize) -> Self {

@@ -37,7 +37,7 @@ pub struct Bed<L: ContactLaw<P::Real>, P: Precision = F64> {
     table: PairTable<P::Real>,
     neighbours: Neighbours<P, L::Memory>,
     ledger: ContactLedger,
-    deepest: f64,
+    is_too_deep: bool,
     #[serde(skip)]
     law: L,
     #[serde(skip, default = "InstructionSet::detect")]
@@ -61,7 +61,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         let neighbours = Neighbours::new(grains.smallest_radius);
         let ledger = ContactLedger::default();
         let set = InstructionSet::detect();
-        Ok(Self { grains, settings, table, neighbours, ledger, deepest: 0.0, law, set })
+        Ok(Self { grains, settings, table, neighbours, ledger, is_too_deep: false, law, set })
     }
 
     /// One step of `time_step` [s] without tools.
@@ -146,10 +146,10 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         let Neighbours { slabs, is_ring, .. } = &mut self.neighbours;
         let pace = sweep(slabs, *is_ring, &self.settings.planes, &input, &motion);
         let mut pass = ContactLedger::default();
-        self.deepest = 0.0;
+        self.is_too_deep = false;
         for slab in slabs {
             pass += slab.sums.ledger;
-            self.deepest = self.deepest.max(slab.sums.deepest);
+            self.is_too_deep |= slab.sums.is_too_deep;
         }
         if self.settings.has_ledger {
             self.ledger.record(&pass);
@@ -163,8 +163,9 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         if !pace.is_finite {
             return Err(self.first_non_finite());
         }
-        if self.deepest > LARGEST_OVERLAP {
-            return Err(self.deepest_grain());
+        if self.is_too_deep {
+            let (grain, position, depth) = self.deepest_overlap();
+            return Err(Failure::OverlapTooLarge { grain, position, depth });
         }
         let travel = pace.fastest_squared.sqrt() * time_step;
         if self.neighbours.are_too_old(&self.grains, &self.settings.domain, travel) {
@@ -193,6 +194,11 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     pub fn keep_ledger(&mut self, has_ledger: bool) {
         self.settings.has_ledger = has_ledger;
         self.ledger = self.ledger.restarted();
+    }
+
+    /// Computes contacts with `set` instead of the widest instruction set of this machine; the bytes stay the same.
+    pub fn use_instruction_set(&mut self, set: InstructionSet) {
+        self.set = set;
     }
 
     /// Number of touching pairs of grains at the last force pass.
@@ -224,11 +230,6 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     /// Gap up to which a pair is listed now [m].
     pub fn skin(&self) -> f64 {
         self.neighbours.skin()
-    }
-
-    /// Largest overlap over the smaller radius at the last force pass [-].
-    pub fn deepest_overlap(&self) -> f64 {
-        self.deepest
     }
 
     /// Memory held by grains and lists [bytes].
@@ -278,29 +279,22 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         Failure::NonFinite { grain: self.grains.ids[bad.unwrap_or(0)] }
     }
 
-    /// The grain with the deepest overlap, found the slow way.
-    fn deepest_grain(&self) -> Failure {
+    /// The grain with the largest overlap over the smaller radius: its permanent number, place [m], and that ratio [-].
+    pub fn deepest_overlap(&self) -> (u32, Vec3, f64) {
         let (spheres, period) = (&self.grains.spheres, self.settings.domain.period::<P::Coordinate>());
-        let mut worst = (0, 0.0);
-        for [i, j] in self.contacts() {
+        let of_pairs = self.contacts().map(|[i, j]| {
             let (a, b) = (&spheres[i as usize], &spheres[j as usize]);
             let distance = period.nearest(a.position - b.position).0.norm();
-            let depth = ((a.radius + b.radius - distance) / a.radius.min(b.radius)).to_f64();
-            if depth > worst.1 {
-                worst = (i as usize, depth);
-            }
-        }
-        for (index, sphere) in spheres.iter().enumerate() {
-            for plane in &self.settings.planes {
-                let radius = sphere.radius.to_f64();
-                let depth = 1.0 - plane.height(crate::cell_grid::to_f64(sphere)) / radius;
-                if depth > worst.1 {
-                    worst = (index, depth);
-                }
-            }
-        }
-        let (index, depth) = worst;
-        let position = crate::cell_grid::to_f64(&spheres[index]);
-        Failure::OverlapTooLarge { grain: self.grains.ids[index], position, depth }
+            (i as usize, ((a.radius + b.radius - distance) / a.radius.min(b.radius)).to_f64())
+        });
+        let of_planes = spheres.iter().enumerate().flat_map(|(index, sphere)| {
+            let height = |plane: &Plane| plane.height(crate::cell_grid::to_f64(sphere));
+            let planes = self.settings.planes.iter();
+            planes.map(move |plane| (index, 1.0 - height(plane) / sphere.radius.to_f64()))
+        });
+        let (index, depth) = of_pairs
+            .chain(of_planes)
+            .fold((0, 0.0), |worst, next| if next.1 > worst.1 { next } else { worst });
+        (self.grains.ids[index], crate::cell_grid::to_f64(&spheres[index]), depth)
     }
 }

@@ -5,6 +5,7 @@
 //! instructions; the results are added to the grains in list order. No fused multiply-add is used, so every
 //! instruction set gives the same bytes.
 
+use crate::LARGEST_OVERLAP;
 use crate::ledger::ContactLedger;
 use crate::shared_grains::SharedGrains;
 use crate::slab::{Slab, SlabSums};
@@ -14,7 +15,7 @@ use grouser_contact::{BLOCK, Contact, ContactLaw, Lanes, Memory, PairTable, Prec
 pub(crate) struct PassInput<'a, P: Precision, L> {
     pub grains: SharedGrains<P>,
     /// Image number to shift [m].
-    pub shifts: [Vector<P::Coordinate>; 27],
+    pub shifts: [Vector<P::Coordinate>; 32],
     pub law: L,
     pub table: &'a PairTable<P::Real>,
     pub time_step: P::Real,
@@ -43,8 +44,8 @@ struct Block<T: Real, M: Memory<T>> {
     friction: Lanes<T>,
     /// Sums over all blocks of a pass, one lane each.
     ledger: [Lanes<T>; 5],
-    /// Largest overlap over the smaller radius, one lane each.
-    deepest: Lanes<T>,
+    /// How far overlaps exceed the largest one that is allowed [m], one lane each.
+    depth: Lanes<T>,
 }
 
 /// Instruction sets that the pass is compiled for; all give the same bytes.
@@ -139,7 +140,7 @@ fn pass<P: Precision, L: ContactLaw<P::Real>, const LEDGER: bool>(
             let reach = first.radius + second.radius;
             let touches = difference.norm_squared() < reach * reach;
             touching |= u64::from(touches) << bit;
-            waiting[n_waiting] = (from + bit) as u32;
+            waiting[n_waiting % (2 * BLOCK)] = (from + bit) as u32;
             n_waiting += usize::from(touches);
         }
         // Pairs that have just parted forget.
@@ -176,7 +177,7 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
             tangential_damping_ratio: Default::default(),
             friction: Default::default(),
             ledger: Default::default(),
-            deepest: Default::default(),
+            depth: Default::default(),
         };
         for k in 0..BLOCK {
             block.difference[0].0[k] = T::ONE;
@@ -218,30 +219,49 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
         slab: &Slab<T, M>,
         input: &PassInput<P, L>,
     ) {
-        let has_materials = input.table.n_materials() > 1;
-        for (k, &place) in places.iter().enumerate() {
-            let pair = slab.pairs[place as usize];
-            let [first, second] = pair.grains().map(|grain| input.grains.sphere(grain));
-            let difference = first.position - second.position - input.shifts[pair.image()];
-            let reach = first.radius + second.radius;
+        // Four contacts at a time: four records of four numbers become four lanes of four numbers.
+        for (group, four) in places.chunks(4).enumerate() {
+            let places: [u32; 4] = std::array::from_fn(|n| four[n.min(four.len() - 1)]);
+            let pairs = places.map(|place| slab.pairs[place as usize]);
+            let first = pairs.map(|pair| input.grains.sphere(pair.grains()[0]));
+            let second = pairs.map(|pair| input.grains.sphere(pair.grains()[1]));
+            let shift = pairs.map(|pair| input.shifts[pair.image()]);
             let narrow = |c: P::Coordinate| T::from_f64(c.to_f64());
-            self.excess.0[k] = narrow(reach * reach - difference.norm_squared());
-            self.radius[0].0[k] = narrow(first.radius);
-            self.radius[1].0[k] = narrow(second.radius);
-            self.mass[0].0[k] = first.mass;
-            self.mass[1].0[k] = second.mass;
-            let difference = difference.to_array();
-            let velocity = (first.velocity - second.velocity).to_array();
-            let spins = [first.spin.to_array(), second.spin.to_array()];
-            for axis in 0..3 {
-                self.difference[axis].0[k] = narrow(difference[axis]);
-                self.velocity[axis].0[k] = velocity[axis];
-                self.spin[0][axis].0[k] = spins[0][axis];
-                self.spin[1][axis].0[k] = spins[1][axis];
+            let lanes = group * 4..group * 4 + 4;
+            let difference: [_; 4] =
+                std::array::from_fn(|n| first[n].position - second[n].position - shift[n]);
+            let reach: [_; 4] = std::array::from_fn(|n| first[n].radius + second[n].radius);
+            let excess: [_; 4] = std::array::from_fn(|n| reach[n] * reach[n] - difference[n].norm_squared());
+            self.excess.0[lanes.clone()].copy_from_slice(&excess.map(narrow));
+            let [x, y, z] = &mut self.difference;
+            x.0[lanes.clone()].copy_from_slice(&difference.map(|d| narrow(d.x)));
+            y.0[lanes.clone()].copy_from_slice(&difference.map(|d| narrow(d.y)));
+            z.0[lanes.clone()].copy_from_slice(&difference.map(|d| narrow(d.z)));
+            let velocity: [_; 4] = std::array::from_fn(|n| first[n].velocity - second[n].velocity);
+            let [x, y, z] = &mut self.velocity;
+            x.0[lanes.clone()].copy_from_slice(&velocity.map(|v| v.x));
+            y.0[lanes.clone()].copy_from_slice(&velocity.map(|v| v.y));
+            z.0[lanes.clone()].copy_from_slice(&velocity.map(|v| v.z));
+            for (body, spheres) in [first, second].iter().enumerate() {
+                self.radius[body].0[lanes.clone()]
+                    .copy_from_slice(&spheres.map(|sphere| narrow(sphere.radius)));
+                self.mass[body].0[lanes.clone()].copy_from_slice(&spheres.map(|sphere| sphere.mass));
+                let [x, y, z] = &mut self.spin[body];
+                x.0[lanes.clone()].copy_from_slice(&spheres.map(|sphere| sphere.spin.x));
+                y.0[lanes.clone()].copy_from_slice(&spheres.map(|sphere| sphere.spin.y));
+                z.0[lanes.clone()].copy_from_slice(&spheres.map(|sphere| sphere.spin.z));
             }
-            slab.memory[place as usize].store(&mut self.memory, k);
-            if has_materials {
-                self.set_pair(k, input.table, first.material, second.material);
+            M::store_four(places.map(|place| slab.memory[place as usize]), &mut self.memory, group * 4);
+        }
+        if input.table.n_materials() > 1 {
+            for (k, &place) in places.iter().enumerate() {
+                let [i, j] = slab.pairs[place as usize].grains();
+                self.set_pair(
+                    k,
+                    input.table,
+                    input.grains.sphere(i).material,
+                    input.grains.sphere(j).material,
+                );
             }
         }
     }
@@ -302,9 +322,10 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
             }
             self.arm[0].0[k] = arms[0];
             self.arm[1].0[k] = arms[1];
-            let is_used = if k < used { T::ONE } else { T::ZERO };
-            let depth = overlap * is_used / radii[0].min(radii[1]);
-            self.deepest.0[k] = depth.max(self.deepest.0[k]);
+            // Lanes beyond the contacts of this block hold leftovers, whose results nobody may see.
+            let or_nothing = |value: T| if k < used { value } else { T::ZERO };
+            let depth = overlap - T::from_f64(LARGEST_OVERLAP) * radii[0].min(radii[1]);
+            self.depth.0[k] = or_nothing(depth).max(self.depth.0[k]);
             if LEDGER {
                 let energy = response.energy;
                 let terms = [
@@ -315,7 +336,7 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
                     energy.sliding,
                 ];
                 for (sum, term) in self.ledger.iter_mut().zip(terms) {
-                    sum.0[k] += term * is_used;
+                    sum.0[k] += or_nothing(term);
                 }
             }
         }
@@ -328,15 +349,20 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
         slab: &mut Slab<T, M>,
         grains: SharedGrains<P>,
     ) {
-        for (k, &place) in places.iter().enumerate() {
-            let [i, j] = slab.pairs[place as usize].grains();
-            slab.memory[place as usize] = M::load(&self.memory, k);
-            let [fx, fy, fz] = &self.difference;
-            let force = Vector::new(fx.0[k], fy.0[k], fz.0[k]);
-            let [cx, cy, cz] = &self.velocity;
-            let couple = -Vector::new(cx.0[k], cy.0[k], cz.0[k]);
-            grains.add_load(i, force, couple * self.arm[0].0[k]);
-            grains.add_load(j, -force, couple * self.arm[1].0[k]);
+        for (group, four) in places.chunks(4).enumerate() {
+            let lanes = |lanes: &Lanes<T>| -> [T; 4] { std::array::from_fn(|n| lanes.0[group * 4 + n]) };
+            let transposed = |[x, y, z]: &[Lanes<T>; 3]| {
+                let (x, y, z) = (lanes(x), lanes(y), lanes(z));
+                [0, 1, 2, 3].map(|n| [x[n], y[n], z[n], T::ZERO])
+            };
+            let (forces, couples) = (transposed(&self.difference), transposed(&self.velocity));
+            let (near, far) = (lanes(&self.arm[0]), lanes(&self.arm[1]));
+            for (n, &place) in four.iter().enumerate() {
+                let [i, j] = slab.pairs[place as usize].grains();
+                slab.memory[place as usize] = M::load(&self.memory, group * 4 + n);
+                grains.add_load_groups(i, forces[n], couples[n].map(|c| -c * near[n]));
+                grains.add_load_groups(j, forces[n].map(|f| -f), couples[n].map(|c| -c * far[n]));
+            }
         }
     }
 
@@ -352,7 +378,7 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
             sliding: total(sliding) * dt,
             ..Default::default()
         };
-        let deepest = self.deepest.0.iter().fold(0.0, |most, depth| depth.to_f64().max(most));
-        SlabSums { ledger, deepest }
+        let is_too_deep = self.depth.0.iter().any(|&depth| depth > T::ZERO);
+        SlabSums { ledger, is_too_deep }
     }
 }

@@ -1,9 +1,9 @@
 //! Analytic planes: floors and side walls.
 
-use crate::ContactLedger;
 use crate::cell_grid::to_f64;
 use crate::force_pass::PassInput;
 use crate::slab::SlabSums;
+use crate::{ContactLedger, LARGEST_OVERLAP};
 use grouser_contact::{Contact, ContactLaw, Memory, Precision, Real, Sphere, Vector};
 use grouser_geometry::Vec3;
 use serde::{Deserialize, Serialize};
@@ -71,7 +71,8 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
         plane: &Plane,
         input: &PassInput<P, L>,
     ) -> SlabSums {
-        let (mut total, mut ledger, mut deepest) = (Vector::<f64>::ZERO, ContactLedger::default(), 0.0_f64);
+        let (mut total, mut ledger) = (Vector::<f64>::ZERO, ContactLedger::default());
+        let mut is_too_deep = false;
         let dt = input.time_step.to_f64();
         let normal = Vector::new(plane.normal.x, plane.normal.y, plane.normal.z).cast::<T>();
         for (&grain, memory) in self.grains.iter().zip(&mut self.memory) {
@@ -82,7 +83,7 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
                 *memory = M::default();
                 continue;
             }
-            deepest = deepest.max(overlap / radius);
+            is_too_deep |= overlap > LARGEST_OVERLAP * radius;
             let (overlap, arm) = (T::from_f64(overlap), T::from_f64(radius - overlap));
             let contact = Contact {
                 overlap,
@@ -110,6 +111,6 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
             };
         }
         self.force = Vec3::new(total.x, total.y, total.z);
-        SlabSums { ledger, deepest }
+        SlabSums { ledger, is_too_deep }
     }
 }

@@ -47,6 +47,14 @@ impl<P: Precision> SharedGrains<P> {
         unsafe { (*self.loads.add(grain as usize)).add(force, torque) }
     }
 
+    /// [`SharedGrains::add_load`] with aligned groups of four numbers.
+    #[inline(always)]
+    pub fn add_load_groups(&self, grain: u32, force: [P::Real; 4], torque: [P::Real; 4]) {
+        debug_assert!((grain as usize) < self.n);
+        // SAFETY: as above.
+        unsafe { (*self.loads.add(grain as usize)).add_groups(force, torque) }
+    }
+
     /// Everything about the grains of a range.
     #[expect(clippy::mut_from_ref, reason = "exclusive access to the range is the promise of the sweep")]
     #[expect(clippy::type_complexity, reason = "three parallel slices")]

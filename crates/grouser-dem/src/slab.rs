@@ -65,8 +65,8 @@ pub(crate) struct Slab<T: Real, M> {
 pub(crate) struct SlabSums {
     /// Energies of the slab's contacts.
     pub ledger: ContactLedger,
-    /// Largest overlap over the smaller radius [-].
-    pub deepest: f64,
+    /// Some overlap is larger than [`crate::LARGEST_OVERLAP`] allows.
+    pub is_too_deep: bool,
 }
 
 impl<T: Real, M: Memory<T>> Slab<T, M> {

@@ -83,7 +83,7 @@ fn pass<P: Precision, L: ContactLaw<P::Real>>(
     for (list, plane) in slab.planes.iter_mut().zip(planes) {
         let of_plane = list.forces(plane, input);
         sums.ledger += of_plane.ledger;
-        sums.deepest = sums.deepest.max(of_plane.deepest);
+        sums.is_too_deep |= of_plane.is_too_deep;
     }
     slab.sums = sums;
 }

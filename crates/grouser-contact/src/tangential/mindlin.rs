@@ -14,7 +14,7 @@ pub enum Loading {
     #[default]
     Passive,
     /// F_t = k_t(δ) s with the displacement since first touch (P0, and the codes compared by Chung & Ooi 2011).
-    /// Oblique impacts without damping gain up to 0.8 % of energy.
+    /// Oblique impacts without damping gain energy where ν < 0.25 (0.8 % at ν = 0.23, μ = 10).
     TotalDisplacement,
 }
 
