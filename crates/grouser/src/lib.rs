@@ -1,1 +1,4 @@
-//! TODO
+//! Terramechanics from one scenario file.
+#![allow(missing_docs)]
+pub mod diagnostic;
+pub mod scene;

@@ -1,0 +1,75 @@
+//! One scenario file: what a scene is made of, read from RON, checked, and written back with every default.
+//!
+//! Adding a kind of soil, tool, motion or reference is one file here and one variant of its enum.
+
+mod dials;
+mod locate;
+mod material;
+mod motion;
+mod outputs;
+mod read;
+mod reference;
+mod soil;
+mod source;
+mod tool;
+mod validate;
+
+pub use dials::{Dials, RestitutionTail, Rotation};
+pub use locate::{Found, Path, locate};
+pub use material::{Material, Pair};
+pub use motion::{Motion, Press};
+pub use outputs::Outputs;
+pub use read::{dialect, read, resolved};
+pub use reference::{PlateCurve, PressureSinkage, Reference};
+pub use soil::{Container, Grains, Layer, Settle, Side, Sizes, Soil};
+pub use source::Source;
+pub use tool::{Plates, Tool};
+pub use validate::{Problem, validate};
+
+use ron::value::RawValue;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A whole scene. SI units and radians; what is not carries its unit in the name. `z` points up.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// One line for the head of tables and reports.
+    pub title: String,
+    /// What the scene shows, for whom, and which of its numbers are assumptions.
+    #[serde(default)]
+    pub description: String,
+    /// Acceleration of free fall [m/s²].
+    #[serde(default = "standard_gravity")]
+    pub gravity_m_s2: [f64; 3],
+    /// Materials by name; soil and tools refer to these names.
+    pub materials: BTreeMap<String, Material>,
+    /// Contacts between two different materials. Pairs left out take the smaller friction and the smaller
+    /// restitution of the two, and stand in the resolved scenario.
+    #[serde(default)]
+    pub pairs: Vec<Pair>,
+    /// The ground.
+    pub soil: Soil,
+    /// What is pressed into the ground or rolls over it.
+    #[serde(default)]
+    pub tool: Option<Tool>,
+    /// How the tool moves.
+    #[serde(default)]
+    pub motion: Option<Motion>,
+    /// Choices between speed and accuracy.
+    #[serde(default)]
+    pub dials: Dials,
+    /// Measurements that the results are compared with.
+    #[serde(default)]
+    pub reference: Vec<Reference>,
+    /// What is written, and how often.
+    #[serde(default)]
+    pub outputs: Outputs,
+    /// What `--quick` replaces: path of a value → the value written there.
+    #[serde(default)]
+    pub quick: BTreeMap<String, Box<RawValue>>,
+}
+
+fn standard_gravity() -> [f64; 3] {
+    [0.0, 0.0, -9.81]
+}

@@ -1,0 +1,22 @@
+//! How tools move.
+
+use serde::{Deserialize, Serialize};
+
+/// Kinds of motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Motion {
+    /// Straight down at constant speed.
+    Press(Press),
+}
+
+/// From above the bed's surface into it, straight down.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Press {
+    /// Speed downwards [m/s].
+    pub speed_m_s: f64,
+    /// Distance of the tool's lowest point from the highest grain below it, at the start [m].
+    pub gap_m: f64,
+    /// Sinkage at the end, measured from the bed's mean surface [m].
+    pub depth_m: f64,
+}

@@ -1,0 +1,29 @@
+//! What meets the ground: for now plates.
+
+use serde::{Deserialize, Serialize};
+
+/// Kinds of tools.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Tool {
+    /// Circular plates, each pressed into its own copy of the same bed.
+    Plates(Plates),
+}
+
+/// A set of rigid circular plates.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plates {
+    /// Diameter of each plate [m].
+    pub diameters_m: Vec<f64>,
+    /// Thickness [m].
+    pub thickness_m: f64,
+    /// Corners of the polygon that stands for the circle; it has the circle's area.
+    #[serde(default = "many_segments")]
+    pub segments: usize,
+    /// Name of the plates' material.
+    pub material: String,
+}
+
+fn many_segments() -> usize {
+    64
+}

@@ -1,0 +1,214 @@
+//! Physics that a scene must obey, refused before anything is computed.
+
+mod grains;
+mod press;
+
+use super::{Motion, Outputs, Reference, Scenario, Soil, Tool};
+use crate::diagnostic::Diagnostic;
+
+/// A value that cannot be, with its path in the scenario.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// Path of the value.
+    pub path: String,
+    /// What is wrong.
+    pub what: String,
+    /// What would be right.
+    pub expected: String,
+    /// How this usually comes about.
+    pub usual_cause: String,
+    /// What to do.
+    pub remedy: String,
+}
+
+impl From<Problem> for Diagnostic {
+    fn from(problem: Problem) -> Self {
+        Diagnostic {
+            what: problem.what,
+            place: None,
+            expected: problem.expected,
+            usual_cause: problem.usual_cause,
+            remedy: problem.remedy,
+        }
+    }
+}
+
+/// Every problem of a scenario, in the order of its parts.
+pub fn validate(scenario: &Scenario) -> Vec<Problem> {
+    let mut check = Check::default();
+    materials(&mut check, scenario);
+    let Soil::Grains(bed) = &scenario.soil;
+    grains::validate(&mut check, scenario, bed);
+    match (&scenario.tool, &scenario.motion) {
+        (Some(Tool::Plates(plates)), Some(Motion::Press(press))) => {
+            press::validate(&mut check, scenario, bed, plates, press);
+        }
+        (Some(_), None) => check.fail(
+            "tool",
+            "the scene has a tool but no motion",
+            "`motion: Press(…)`",
+            "the motion was deleted or commented out",
+        ),
+        (None, Some(_)) => check.fail(
+            "motion",
+            "the scene has a motion but no tool",
+            "`tool: Plates(…)`",
+            "the tool was deleted or commented out",
+        ),
+        (None, None) => {}
+    }
+    let fraction = scenario.dials.time_step_fraction;
+    check.require(
+        "dials.time_step_fraction",
+        fraction,
+        fraction > 0.0 && fraction <= 1.0,
+        "in (0, 1]",
+        "a percentage; above 1 the integration is unstable, 0.2 is a safe choice",
+    );
+    let Outputs { sample_every_s, vtk_every_s, checkpoint_every_s } = scenario.outputs;
+    check.positive("outputs.sample_every_s", sample_every_s, "a time [s]");
+    check.positive("outputs.vtk_every_s", vtk_every_s, "a time [s]");
+    check.positive("outputs.checkpoint_every_s", checkpoint_every_s, "a time [s]");
+    references(&mut check, scenario);
+    check.problems
+}
+
+fn materials(check: &mut Check, scenario: &Scenario) {
+    for (axis, value) in scenario.gravity_m_s2.iter().enumerate() {
+        check.finite(&format!("gravity_m_s2[{axis}]"), *value);
+    }
+    for (name, material) in &scenario.materials {
+        let path = |field: &str| format!("materials.{name}.{field}");
+        check.positive(&path("young_pa"), material.young_pa, "a stiffness [Pa]; 57 MPa is 57e6");
+        check.positive(&path("density_kg_m3"), material.density_kg_m3, "a density [kg/m³]; quartz has 2650");
+        let poisson = material.poisson;
+        check.require(
+            &path("poisson"),
+            poisson,
+            poisson > -1.0 && poisson <= 0.5,
+            "in (-1, 0.5]",
+            "a Poisson's ratio derived from E and G that do not belong together: ν = E/(2G) - 1",
+        );
+        check.restitution(&path("restitution"), material.restitution);
+        check.friction(&path("friction"), material.friction);
+    }
+    for (i, pair) in scenario.pairs.iter().enumerate() {
+        check.material(scenario, &format!("pairs[{i}].between[0]"), &pair.between.0);
+        check.material(scenario, &format!("pairs[{i}].between[1]"), &pair.between.1);
+        check.restitution(&format!("pairs[{i}].restitution"), pair.restitution);
+        check.friction(&format!("pairs[{i}].friction"), pair.friction);
+    }
+}
+
+fn references(check: &mut Check, scenario: &Scenario) {
+    for (i, Reference::PressureSinkage(measured)) in scenario.reference.iter().enumerate() {
+        if measured.source.trim().is_empty() {
+            check.fail(
+                &format!("reference[{i}].source"),
+                "a measurement without a source",
+                "who measured it and where it is published",
+                "left empty while drafting",
+            );
+        }
+        for (j, plate) in measured.plates.iter().enumerate() {
+            let path = format!("reference[{i}].plates[{j}]");
+            check.positive(&format!("{path}.diameter_m"), plate.diameter_m, "a diameter [m]");
+            for (k, &(sinkage, pressure)) in plate.points.iter().enumerate() {
+                let previous = if k == 0 { 0.0 } else { plate.points[k - 1].0 };
+                let ok = sinkage > previous && sinkage.is_finite();
+                check.require(
+                    &format!("{path}.points[{k}][0]"),
+                    sinkage,
+                    ok,
+                    "positive and rising [m]",
+                    "millimetres, or points out of order",
+                );
+                check.finite(&format!("{path}.points[{k}][1]"), pressure);
+            }
+        }
+    }
+}
+
+/// Collects problems.
+#[derive(Default)]
+pub(super) struct Check {
+    problems: Vec<Problem>,
+}
+
+impl Check {
+    fn push(&mut self, path: &str, what: String, expected: &str, usual_cause: &str, remedy: String) {
+        self.problems.push(Problem {
+            path: path.to_owned(),
+            what,
+            expected: expected.to_owned(),
+            usual_cause: usual_cause.to_owned(),
+            remedy,
+        });
+    }
+
+    fn fail(&mut self, path: &str, what: &str, expected: &str, usual_cause: &str) {
+        self.push(path, what.to_owned(), expected, usual_cause, String::new());
+    }
+
+    fn require(&mut self, path: &str, value: f64, is_ok: bool, expected: &str, usual_cause: &str) {
+        if !is_ok {
+            self.push(path, format!("`{path}` is {value}"), expected, usual_cause, String::new());
+        }
+    }
+
+    fn positive(&mut self, path: &str, value: f64, meaning: &str) {
+        let is_ok = value > 0.0 && value.is_finite();
+        self.require(
+            path,
+            value,
+            is_ok,
+            &format!("a positive number: {meaning}"),
+            "a sign, a unit (values are SI), or a placeholder that was never filled in",
+        );
+    }
+
+    fn finite(&mut self, path: &str, value: f64) {
+        self.require(
+            path,
+            value,
+            value.is_finite(),
+            "a finite number",
+            "inf or NaN written by another program",
+        );
+    }
+
+    fn restitution(&mut self, path: &str, value: f64) {
+        self.require(
+            path,
+            value,
+            value > 0.0 && value <= 1.0,
+            "in (0, 1]: 1 loses nothing",
+            "a percentage, or 0 for \"no bounce\": 0.05 is the practical smallest",
+        );
+    }
+
+    fn friction(&mut self, path: &str, value: f64) {
+        self.require(
+            path,
+            value,
+            value >= 0.0 && value.is_finite(),
+            "zero or positive: tan of the angle",
+            "an angle in degrees: 30° is 0.577",
+        );
+    }
+
+    fn material(&mut self, scenario: &Scenario, path: &str, name: &str) {
+        if !scenario.materials.contains_key(name) {
+            let known =
+                scenario.materials.keys().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+            let expected = format!("one of {known}");
+            self.push(
+                path,
+                format!("there is no material \"{name}\""),
+                &expected,
+                "a misspelt name",
+                String::new(),
+            );
+        }
+    }
+}
