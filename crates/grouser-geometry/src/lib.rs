@@ -2,7 +2,12 @@
 //!
 //! SI units and radians everywhere; right-handed frames; `z` points up in every generator.
 
+mod bounding_box;
+mod surface;
+
+pub use bounding_box::BoundingBox;
 pub use nalgebra;
+pub use surface::{SolidProperties, TriangleSurface};
 
 /// Vector or point in space [m, or the unit of the quantity].
 pub type Vec3 = nalgebra::Vector3<f64>;
