@@ -8,7 +8,7 @@ use crate::{BoundingBox, Pose, Vec3};
 /// Surface made of triangles.
 ///
 /// Corners of a triangle run anticlockwise seen from outside (from where the grains are): its normal points outwards.
-/// The readers and generators of this crate give such surfaces; the mesh doctor checks the others.
+/// The readers and generators of this crate give such surfaces; [`crate::mesh_doctor`] checks the others.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TriangleSurface {
     /// Positions of the vertices [m].
