@@ -1,8 +1,48 @@
 //! Geometry of terramechanics: what lies under every other crate.
 //!
-//! SI units and radians everywhere; right-handed frames; `z` points up in every generator.
+//! SI units and radians everywhere; right-handed frames; `z` points up in every generator. Triangles run anticlockwise
+//! seen from outside, so that their normals point outwards.
+//!
+//! ```text
+//!      c            n = (b − a) × (c − a) / |…|  points towards you
+//!     ╱ ╲
+//!    ╱   ╲          fold angle of an edge: 0 flat, > 0 ridge, < 0 valley
+//!   a─────b
+//! ```
+//!
+//! A wheel is made, checked and weighed:
+//!
+//! ```
+//! use grouser_geometry::generate::{GrouseredWheel, grousered_wheel};
+//! use grouser_geometry::mesh_doctor::{Closedness, examine};
+//!
+//! let wheel = grousered_wheel(&GrouseredWheel {
+//!     radius: 0.125,
+//!     width: 0.1,
+//!     n_grousers: 12,
+//!     grouser_height: 0.01,
+//!     grouser_thickness: 0.003,
+//!     n_rim_segments: 8,
+//! })?;
+//! assert!(examine(&wheel, Closedness::Required).is_empty());
+//! let mass = 2700.0 * wheel.solid_properties().volume; // aluminium
+//! assert!((mass - 13.34).abs() < 0.01);
+//! # Ok::<(), grouser_geometry::generate::ShapeError>(())
+//! ```
 
+mod bounding_box;
+pub mod generate;
+pub mod mesh_doctor;
+pub mod obj;
+mod polygon;
+pub mod stl;
+mod surface;
+mod surface_topology;
+
+pub use bounding_box::BoundingBox;
 pub use nalgebra;
+pub use surface::{SolidProperties, TriangleSurface};
+pub use surface_topology::{Edge, EdgeUse, SurfaceTopology};
 
 /// Vector or point in space [m, or the unit of the quantity].
 pub type Vec3 = nalgebra::Vector3<f64>;

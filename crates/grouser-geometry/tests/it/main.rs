@@ -1,0 +1,5 @@
+//! Readers, generators and the mesh doctor, seen from outside.
+
+mod generators;
+mod mesh_doctor;
+mod readers;
