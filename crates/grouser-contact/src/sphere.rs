@@ -71,16 +71,4 @@ impl<T: Real> Load<T> {
         self.force += force;
         self.torque += torque;
     }
-
-    /// Adds a force and a torque given as aligned groups of four (the fourth number is zero).
-    #[inline(always)]
-    pub fn add_groups(&mut self, force: [T; 4], torque: [T; 4]) {
-        let add = |a: &mut Vector<T>, unused: &mut T, b: [T; 4]| {
-            let sum = [a.x + b[0], a.y + b[1], a.z + b[2], *unused + b[3]];
-            *a = Vector::new(sum[0], sum[1], sum[2]);
-            *unused = sum[3];
-        };
-        add(&mut self.force, &mut self.unused_force, force);
-        add(&mut self.torque, &mut self.unused_torque, torque);
-    }
 }

@@ -78,11 +78,11 @@ impl<C: Real> Period<C> {
 
     /// What to subtract from a difference to reach each image [m]; image numbers are those of [`Period::nearest`]. A power
     /// of two of them, so that five bits always name one.
-    pub fn shifts(&self) -> [Vector<C>; 32] {
+    pub fn shifts(&self) -> [[C; 4]; 32] {
         std::array::from_fn(|image| {
             let turns = [image % 3, image / 3 % 3, image / 9];
             let shift = |axis: usize| self.length[axis] * C::from_f64(turns[axis] as f64 - 1.0);
-            Vector::new(shift(0), shift(1), shift(2))
+            [shift(0), shift(1), shift(2), C::ZERO]
         })
     }
 }

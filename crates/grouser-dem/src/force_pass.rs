@@ -7,15 +7,18 @@
 
 use crate::LARGEST_OVERLAP;
 use crate::ledger::ContactLedger;
+#[cfg(target_arch = "x86_64")]
+use crate::quads;
 use crate::shared_grains::SharedGrains;
-use crate::slab::{Slab, SlabSums};
-use grouser_contact::{BLOCK, Contact, ContactLaw, Lanes, Memory, PairTable, Precision, Real, Vector};
+use crate::slab::{Pair, Slab, SlabSums};
+use grouser_contact::{BLOCK, Contact, ContactLaw, F64, Lanes, Memory, PairTable, Precision, Real, Vector};
+use std::any::TypeId;
 
 /// What a slab's pass needs beside the slab.
 pub(crate) struct PassInput<'a, P: Precision, L> {
     pub grains: SharedGrains<P>,
-    /// Image number to shift [m].
-    pub shifts: [Vector<P::Coordinate>; 32],
+    /// Image number to shift [m]; the fourth number is zero.
+    pub shifts: [[P::Coordinate; 4]; 32],
     pub law: L,
     pub table: &'a PairTable<P::Real>,
     pub time_step: P::Real,
@@ -86,7 +89,7 @@ pub(crate) fn slab_forces<P: Precision, L: ContactLaw<P::Real>>(
     input: &PassInput<P, L>,
 ) -> SlabSums {
     match input.set {
-        InstructionSet::Baseline => dispatch_ledger(slab, input),
+        InstructionSet::Baseline => dispatch_ledger::<P, L, false>(slab, input),
         // SAFETY: `detect` found the instructions on this machine.
         #[cfg(target_arch = "x86_64")]
         InstructionSet::Avx2 => unsafe { slab_forces_avx2(slab, input) },
@@ -102,7 +105,7 @@ fn slab_forces_avx2<P: Precision, L: ContactLaw<P::Real>>(
     slab: &mut Slab<P::Real, L::Memory>,
     input: &PassInput<P, L>,
 ) -> SlabSums {
-    dispatch_ledger(slab, input)
+    dispatch_ledger::<P, L, true>(slab, input)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -111,37 +114,92 @@ fn slab_forces_avx512<P: Precision, L: ContactLaw<P::Real>>(
     slab: &mut Slab<P::Real, L::Memory>,
     input: &PassInput<P, L>,
 ) -> SlabSums {
-    dispatch_ledger(slab, input)
+    dispatch_ledger::<P, L, true>(slab, input)
 }
 
 #[inline(always)]
-fn dispatch_ledger<P: Precision, L: ContactLaw<P::Real>>(
+fn dispatch_ledger<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool>(
     slab: &mut Slab<P::Real, L::Memory>,
     input: &PassInput<P, L>,
 ) -> SlabSums {
-    if input.has_ledger { pass::<P, L, true>(slab, input) } else { pass::<P, L, false>(slab, input) }
+    if input.has_ledger {
+        pass::<P, L, HAS_QUADS, true>(slab, input)
+    } else {
+        pass::<P, L, HAS_QUADS, false>(slab, input)
+    }
+}
+
+/// Places of touching pairs that wait for a full block.
+pub(crate) struct Waiting {
+    places: [u32; 2 * BLOCK + 4],
+    n: usize,
+}
+
+impl Waiting {
+    /// Appends `from + n` for every bit n of a mask of four bits.
+    #[inline(always)]
+    pub fn append_four(&mut self, mask: usize, from: u32) {
+        const ORDER: [[u8; 4]; 16] = places_of_bits();
+        let four = ORDER[mask & 15].map(|place| from + u32::from(place));
+        let n = self.n & (2 * BLOCK - 1);
+        self.places[n..n + 4].copy_from_slice(&four);
+        self.n += mask.count_ones() as usize;
+    }
+}
+
+/// For each mask of four bits the numbers of its bits, first ones first.
+const fn places_of_bits() -> [[u8; 4]; 16] {
+    let mut table = [[0; 4]; 16];
+    let mut mask = 0;
+    while mask < 16 {
+        let (mut bit, mut n) = (0, 0);
+        while bit < 4 {
+            if mask >> bit & 1 == 1 {
+                table[mask][n] = bit as u8;
+                n += 1;
+            }
+            bit += 1;
+        }
+        mask += 1;
+    }
+    table
+}
+
+/// Centre to centre [m] of a pair, and (x² + y²) + (z² − reach²) [m²]: negative where it touches.
+#[inline(always)]
+fn relative_place<P: Precision, L>(
+    pair: Pair,
+    input: &PassInput<P, L>,
+) -> (Vector<P::Coordinate>, P::Coordinate) {
+    let [first, second] = pair.grains().map(|grain| input.grains.sphere(grain));
+    let [x, y, z, _] = input.shifts[pair.image()];
+    let difference = first.position - second.position - Vector::new(x, y, z);
+    let reach = first.radius + second.radius;
+    let Vector { x, y, z } = difference;
+    (difference, (x * x + y * y) + (z * z - reach * reach))
 }
 
 #[inline(always)]
-fn pass<P: Precision, L: ContactLaw<P::Real>, const LEDGER: bool>(
+fn pass<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool, const LEDGER: bool>(
     slab: &mut Slab<P::Real, L::Memory>,
     input: &PassInput<P, L>,
 ) -> SlabSums {
     let mut block = Block::<P::Real, L::Memory>::new(input.table);
-    let mut waiting = [0_u32; 2 * BLOCK];
-    let mut n_waiting = 0;
+    let mut waiting = Waiting { places: [0; 2 * BLOCK + 4], n: 0 };
     for word in 0..slab.touched.len() {
         let from = word * 64;
         let pairs = &slab.pairs[from..slab.pairs.len().min(from + 64)];
-        let mut touching = 0_u64;
-        for (bit, pair) in pairs.iter().enumerate() {
-            let [first, second] = pair.grains().map(|grain| input.grains.sphere(grain));
-            let difference = first.position - second.position - input.shifts[pair.image()];
-            let reach = first.radius + second.radius;
-            let touches = difference.norm_squared() < reach * reach;
+        let (mut touching, mut n_done) = (0_u64, 0);
+        #[cfg(target_arch = "x86_64")]
+        if HAS_QUADS && is_double::<P>() {
+            // SAFETY: this pass is compiled for AVX2; the precision is double; lists hold numbers of grains.
+            touching = unsafe { quads::touching(pairs, from as u32, quad_places(input), &mut waiting) };
+            n_done = pairs.len() & !3;
+        }
+        for (bit, &pair) in pairs.iter().enumerate().skip(n_done) {
+            let touches = relative_place(pair, input).1 < P::Coordinate::ZERO;
             touching |= u64::from(touches) << bit;
-            waiting[n_waiting % (2 * BLOCK)] = (from + bit) as u32;
-            n_waiting += usize::from(touches);
+            waiting.append_four(usize::from(touches), (from + bit) as u32);
         }
         // Pairs that have just parted forget.
         let mut parted = slab.touched[word] & !touching;
@@ -150,14 +208,30 @@ fn pass<P: Precision, L: ContactLaw<P::Real>, const LEDGER: bool>(
             parted &= parted - 1;
         }
         slab.touched[word] = touching;
-        if n_waiting >= BLOCK {
-            block.work::<P, L, LEDGER>(&waiting[..BLOCK], slab, input);
-            waiting.copy_within(BLOCK..n_waiting, 0);
-            n_waiting -= BLOCK;
+        if waiting.n >= BLOCK {
+            block.work::<P, L, HAS_QUADS, LEDGER>(&waiting.places[..BLOCK], slab, input);
+            waiting.places.copy_within(BLOCK..waiting.n, 0);
+            waiting.n -= BLOCK;
         }
     }
-    block.work::<P, L, LEDGER>(&waiting[..n_waiting], slab, input);
+    block.work::<P, L, HAS_QUADS, LEDGER>(&waiting.places[..waiting.n], slab, input);
     block.totals(input.time_step)
+}
+
+/// Both scalars of `P` are `f64`; known when compiled.
+#[inline(always)]
+fn is_double<P: Precision>() -> bool {
+    TypeId::of::<P>() == TypeId::of::<F64>()
+}
+
+/// The arrays of a double-precision bed.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn quad_places<'a, P: Precision, L>(input: &'a PassInput<P, L>) -> quads::Places<'a> {
+    debug_assert!(is_double::<P>());
+    // SAFETY: `P::Coordinate` is `f64`.
+    let shifts = unsafe { &*(&raw const input.shifts).cast::<[[f64; 4]; 32]>() };
+    quads::Places { spheres: input.grains.spheres().cast(), shifts }
 }
 
 impl<T: Real, M: Memory<T>> Block<T, M> {
@@ -198,59 +272,55 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
     }
 
     #[inline(always)]
-    fn work<P: Precision<Real = T>, L: ContactLaw<T, Memory = M>, const LEDGER: bool>(
+    fn work<
+        P: Precision<Real = T>,
+        L: ContactLaw<T, Memory = M>,
+        const HAS_QUADS: bool,
+        const LEDGER: bool,
+    >(
         &mut self,
         places: &[u32],
         slab: &mut Slab<T, M>,
         input: &PassInput<P, L>,
     ) {
-        self.gather(places, slab, input);
+        self.gather::<P, L, HAS_QUADS>(places, slab, input);
         // Groups of 16 lanes: a constant trip count that every vector width divides.
         for group in 0..places.len().div_ceil(16) {
             self.respond::<L, LEDGER>(group * 16, places.len(), &input.law, input.time_step);
         }
-        self.scatter(places, slab, input.grains);
+        self.scatter::<P, HAS_QUADS>(places, slab, input.grains);
     }
 
     #[inline(always)]
-    fn gather<P: Precision<Real = T>, L>(
+    fn gather<P: Precision<Real = T>, L, const HAS_QUADS: bool>(
         &mut self,
         places: &[u32],
         slab: &Slab<T, M>,
         input: &PassInput<P, L>,
     ) {
-        // Four contacts at a time: four records of four numbers become four lanes of four numbers.
         for (group, four) in places.chunks(4).enumerate() {
             let places: [u32; 4] = std::array::from_fn(|n| four[n.min(four.len() - 1)]);
             let pairs = places.map(|place| slab.pairs[place as usize]);
-            let first = pairs.map(|pair| input.grains.sphere(pair.grains()[0]));
-            let second = pairs.map(|pair| input.grains.sphere(pair.grains()[1]));
-            let shift = pairs.map(|pair| input.shifts[pair.image()]);
-            let narrow = |c: P::Coordinate| T::from_f64(c.to_f64());
-            let lanes = group * 4..group * 4 + 4;
-            let difference: [_; 4] =
-                std::array::from_fn(|n| first[n].position - second[n].position - shift[n]);
-            let reach: [_; 4] = std::array::from_fn(|n| first[n].radius + second[n].radius);
-            let excess: [_; 4] = std::array::from_fn(|n| reach[n] * reach[n] - difference[n].norm_squared());
-            self.excess.0[lanes.clone()].copy_from_slice(&excess.map(narrow));
-            let [x, y, z] = &mut self.difference;
-            x.0[lanes.clone()].copy_from_slice(&difference.map(|d| narrow(d.x)));
-            y.0[lanes.clone()].copy_from_slice(&difference.map(|d| narrow(d.y)));
-            z.0[lanes.clone()].copy_from_slice(&difference.map(|d| narrow(d.z)));
-            let velocity: [_; 4] = std::array::from_fn(|n| first[n].velocity - second[n].velocity);
-            let [x, y, z] = &mut self.velocity;
-            x.0[lanes.clone()].copy_from_slice(&velocity.map(|v| v.x));
-            y.0[lanes.clone()].copy_from_slice(&velocity.map(|v| v.y));
-            z.0[lanes.clone()].copy_from_slice(&velocity.map(|v| v.z));
-            for (body, spheres) in [first, second].iter().enumerate() {
-                self.radius[body].0[lanes.clone()]
-                    .copy_from_slice(&spheres.map(|sphere| narrow(sphere.radius)));
-                self.mass[body].0[lanes.clone()].copy_from_slice(&spheres.map(|sphere| sphere.mass));
-                let [x, y, z] = &mut self.spin[body];
-                x.0[lanes.clone()].copy_from_slice(&spheres.map(|sphere| sphere.spin.x));
-                y.0[lanes.clone()].copy_from_slice(&spheres.map(|sphere| sphere.spin.y));
-                z.0[lanes.clone()].copy_from_slice(&spheres.map(|sphere| sphere.spin.z));
+            #[cfg(target_arch = "x86_64")]
+            if HAS_QUADS && is_double::<P>() {
+                let lanes = quads::GatherLanes {
+                    difference: self.difference.each_mut().map(quads::start),
+                    excess: quads::start(&mut self.excess),
+                    radius: self.radius.each_mut().map(quads::start),
+                    mass: self.mass.each_mut().map(quads::start),
+                    velocity: self.velocity.each_mut().map(quads::start),
+                    spin: self.spin.each_mut().map(|spin| spin.each_mut().map(quads::start)),
+                };
+                // SAFETY: as in `pass`; a block has room for all places.
+                unsafe { quads::gather(pairs, quad_places(input), &lanes, 4 * group) };
+            } else {
+                pairs
+                    .into_iter()
+                    .enumerate()
+                    .for_each(|(n, pair)| self.gather_one(pair, input, 4 * group + n));
             }
+            #[cfg(not(target_arch = "x86_64"))]
+            pairs.into_iter().enumerate().for_each(|(n, pair)| self.gather_one(pair, input, 4 * group + n));
             M::store_four(places.map(|place| slab.memory[place as usize]), &mut self.memory, group * 4);
         }
         if input.table.n_materials() > 1 {
@@ -262,6 +332,28 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
                     input.grains.sphere(i).material,
                     input.grains.sphere(j).material,
                 );
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn gather_one<P: Precision<Real = T>, L>(&mut self, pair: Pair, input: &PassInput<P, L>, k: usize) {
+        let [first, second] = pair.grains().map(|grain| input.grains.sphere(grain));
+        let narrow = |c: P::Coordinate| T::from_f64(c.to_f64());
+        let (difference, room) = relative_place(pair, input);
+        self.excess.0[k] = -narrow(room);
+        let difference = difference.to_array();
+        let velocity = (first.velocity - second.velocity).to_array();
+        for axis in 0..3 {
+            self.difference[axis].0[k] = narrow(difference[axis]);
+            self.velocity[axis].0[k] = velocity[axis];
+        }
+        for (body, sphere) in [first, second].into_iter().enumerate() {
+            self.radius[body].0[k] = narrow(sphere.radius);
+            self.mass[body].0[k] = sphere.mass;
+            let spin = sphere.spin.to_array();
+            for axis in 0..3 {
+                self.spin[body][axis].0[k] = spin[axis];
             }
         }
     }
@@ -343,26 +435,38 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
     }
 
     #[inline(always)]
-    fn scatter<P: Precision<Real = T>>(
+    fn scatter<P: Precision<Real = T>, const HAS_QUADS: bool>(
         &mut self,
         places: &[u32],
         slab: &mut Slab<T, M>,
         grains: SharedGrains<P>,
     ) {
-        for (group, four) in places.chunks(4).enumerate() {
-            let lanes = |lanes: &Lanes<T>| -> [T; 4] { std::array::from_fn(|n| lanes.0[group * 4 + n]) };
-            let transposed = |[x, y, z]: &[Lanes<T>; 3]| {
-                let (x, y, z) = (lanes(x), lanes(y), lanes(z));
-                [0, 1, 2, 3].map(|n| [x[n], y[n], z[n], T::ZERO])
-            };
-            let (forces, couples) = (transposed(&self.difference), transposed(&self.velocity));
-            let (near, far) = (lanes(&self.arm[0]), lanes(&self.arm[1]));
-            for (n, &place) in four.iter().enumerate() {
-                let [i, j] = slab.pairs[place as usize].grains();
-                slab.memory[place as usize] = M::load(&self.memory, group * 4 + n);
-                grains.add_load_groups(i, forces[n], couples[n].map(|c| -c * near[n]));
-                grains.add_load_groups(j, forces[n].map(|f| -f), couples[n].map(|c| -c * far[n]));
+        for (k, &place) in places.iter().enumerate() {
+            slab.memory[place as usize] = M::load(&self.memory, k);
+        }
+        #[cfg(target_arch = "x86_64")]
+        if HAS_QUADS && is_double::<P>() {
+            let forces =
+                [self.difference.each_mut(), self.velocity.each_mut()].map(|lanes| lanes.map(quads::start));
+            let arms = self.arm.each_mut().map(quads::start);
+            for (group, four) in places.chunks(4).enumerate() {
+                let pairs: [Pair; 4] =
+                    std::array::from_fn(|n| slab.pairs[four[n.min(four.len() - 1)] as usize]);
+                // SAFETY: as in `pass`; no other slab works on these grains now.
+                unsafe {
+                    quads::scatter(&pairs[..four.len()], grains.loads().cast(), forces, arms, 4 * group)
+                };
             }
+            return;
+        }
+        for (k, &place) in places.iter().enumerate() {
+            let [i, j] = slab.pairs[place as usize].grains();
+            let [fx, fy, fz] = &self.difference;
+            let force = Vector::new(fx.0[k], fy.0[k], fz.0[k]);
+            let [cx, cy, cz] = &self.velocity;
+            let couple = Vector::new(cx.0[k], cy.0[k], cz.0[k]);
+            grains.add_load(i, force, couple * -self.arm[0].0[k]);
+            grains.add_load(j, -force, couple * -self.arm[1].0[k]);
         }
     }
 

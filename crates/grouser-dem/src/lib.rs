@@ -47,6 +47,8 @@ mod ledger;
 mod neighbours;
 mod packing;
 mod plane;
+#[cfg(target_arch = "x86_64")]
+mod quads;
 mod settle;
 mod shared_grains;
 mod slab;

@@ -47,12 +47,16 @@ impl<P: Precision> SharedGrains<P> {
         unsafe { (*self.loads.add(grain as usize)).add(force, torque) }
     }
 
-    /// [`SharedGrains::add_load`] with aligned groups of four numbers.
+    /// Start of the records.
     #[inline(always)]
-    pub fn add_load_groups(&self, grain: u32, force: [P::Real; 4], torque: [P::Real; 4]) {
-        debug_assert!((grain as usize) < self.n);
-        // SAFETY: as above.
-        unsafe { (*self.loads.add(grain as usize)).add_groups(force, torque) }
+    pub fn spheres(&self) -> *const Sphere<P> {
+        self.spheres
+    }
+
+    /// Start of the loads.
+    #[inline(always)]
+    pub fn loads(&self) -> *mut Load<P::Real> {
+        self.loads
     }
 
     /// Everything about the grains of a range.
