@@ -35,14 +35,18 @@ pub mod generate;
 pub mod mesh_doctor;
 pub mod obj;
 mod polygon;
+mod rigid_motion;
 pub mod stl;
 mod surface;
 mod surface_topology;
+mod wrench;
 
 pub use bounding_box::BoundingBox;
 pub use nalgebra;
+pub use rigid_motion::RigidMotion;
 pub use surface::{SolidProperties, TriangleSurface};
 pub use surface_topology::{Edge, EdgeUse, SurfaceTopology};
+pub use wrench::Wrench;
 
 /// Vector or point in space [m, or the unit of the quantity].
 pub type Vec3 = nalgebra::Vector3<f64>;
