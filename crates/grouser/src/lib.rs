@@ -1,4 +1,5 @@
 //! Terramechanics from one scenario file.
 #![allow(missing_docs)]
 pub mod diagnostic;
+pub mod output;
 pub mod scene;
