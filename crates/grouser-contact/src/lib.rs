@@ -37,6 +37,7 @@
 mod error;
 mod hertz_mindlin;
 mod law;
+mod ledger;
 mod material;
 mod normal;
 mod precision;
@@ -48,6 +49,7 @@ mod vector;
 pub use error::ParameterError;
 pub use hertz_mindlin::HertzMindlin;
 pub use law::{BLOCK, Contact, ContactEnergy, ContactLaw, Lanes, Memory, Response};
+pub use ledger::ContactLedger;
 pub use material::{Interaction, Material, PairProperties, PairTable};
 pub use normal::{Tail, damping_coefficient, hertz_energy, hertz_stiffness, restitution_with_cut_tail};
 pub use precision::{F32, F64, Mixed, Precision};

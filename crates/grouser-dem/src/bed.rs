@@ -5,8 +5,8 @@ use crate::integrate::{Motion, Pace, Stages, turn};
 use crate::neighbours::Neighbours;
 use crate::shared_grains::SharedGrains;
 use crate::sweep::sweep;
-use crate::{BedEnergy, BedError, ContactLedger, Domain, Failure, Grains, Plane, Rotation};
-use grouser_contact::{ContactLaw, F64, PairTable, Precision, Real, Sphere};
+use crate::{BedEnergy, BedError, Domain, Failure, Grains, Plane, Rotation};
+use grouser_contact::{ContactLaw, ContactLedger, F64, PairTable, Precision, Real, Sphere};
 use grouser_geometry::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -167,7 +167,8 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
             let (grain, position, depth) = self.deepest_overlap();
             return Err(Failure::OverlapTooLarge { grain, position, depth });
         }
-        let travel = pace.fastest_squared.sqrt() * time_step;
+        self.grains.fastest = pace.fastest_squared.sqrt();
+        let travel = self.grains.fastest * time_step;
         if self.neighbours.are_too_old(&self.grains, &self.settings.domain, travel) {
             self.renew_lists()?;
         }
@@ -188,6 +189,11 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     /// Box, planes, gravity and switches.
     pub fn settings(&self) -> &BedSettings {
         &self.settings
+    }
+
+    /// Constants of every pair of materials.
+    pub fn pair_table(&self) -> &PairTable<P::Real> {
+        &self.table
     }
 
     /// Turns the ledger on or off; turned on, it begins with nothing spent.

@@ -6,12 +6,13 @@
 //! instruction set gives the same bytes.
 
 use crate::LARGEST_OVERLAP;
-use crate::ledger::ContactLedger;
 #[cfg(target_arch = "x86_64")]
 use crate::quads;
 use crate::shared_grains::SharedGrains;
 use crate::slab::{Pair, Slab, SlabSums};
-use grouser_contact::{BLOCK, Contact, ContactLaw, F64, Lanes, Memory, PairTable, Precision, Real, Vector};
+use grouser_contact::{
+    BLOCK, Contact, ContactLaw, ContactLedger, F64, Lanes, Memory, PairTable, Precision, Real, Vector,
+};
 use std::any::TypeId;
 
 /// What a slab's pass needs beside the slab.

@@ -29,6 +29,8 @@ pub struct Grains<P: Precision> {
     pub orientations: Option<Vec<Orientation>>,
     /// Linear and angular acceleration at the end of the last step [m/s², rad/s²].
     pub(crate) accelerations: Vec<[Vector<P::Real>; 2]>,
+    /// Upper bound of the speed of any grain in the present step [m/s].
+    pub(crate) fastest: f64,
     pub(crate) smallest_radius: f64,
     pub(crate) largest_radius: f64,
 }
@@ -46,6 +48,7 @@ impl<P: Precision> Grains<P> {
             loads: vec![Load::default(); n],
             orientations: None,
             accelerations: vec![[Vector::ZERO; 2]; n],
+            fastest: 0.0,
             smallest_radius,
             largest_radius,
         }
@@ -59,6 +62,11 @@ impl<P: Precision> Grains<P> {
     /// There are no grains.
     pub fn is_empty(&self) -> bool {
         self.spheres.is_empty()
+    }
+
+    /// Speed of the fastest grain in the present step [m/s].
+    pub fn fastest(&self) -> f64 {
+        self.fastest
     }
 
     /// Keeps an orientation for each grain from now on.

@@ -38,12 +38,12 @@
 mod bed;
 mod cell_grid;
 mod domain;
+mod energy;
 mod error;
 mod failure;
 mod force_pass;
 mod grains;
 mod integrate;
-mod ledger;
 mod neighbours;
 mod packing;
 mod plane;
@@ -57,11 +57,11 @@ mod time_step;
 
 pub use bed::{Bed, BedSettings, LARGEST_OVERLAP};
 pub use domain::Domain;
+pub use energy::BedEnergy;
 pub use error::BedError;
 pub use failure::Failure;
 pub use force_pass::InstructionSet;
 pub use grains::{Grains, Rotation, sphere};
-pub use ledger::{BedEnergy, ContactLedger};
 pub use packing::{Layer, PackingError, RadiusDistribution, random_packing};
 pub use plane::Plane;
 pub use settle::{SettleCriterion, Settled, Settling};

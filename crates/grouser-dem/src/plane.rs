@@ -1,10 +1,10 @@
 //! Analytic planes: floors and side walls.
 
+use crate::LARGEST_OVERLAP;
 use crate::cell_grid::to_f64;
 use crate::force_pass::PassInput;
 use crate::slab::SlabSums;
-use crate::{ContactLedger, LARGEST_OVERLAP};
-use grouser_contact::{Contact, ContactLaw, Memory, Precision, Real, Sphere, Vector};
+use grouser_contact::{Contact, ContactLaw, ContactLedger, Memory, Precision, Real, Sphere, Vector};
 use grouser_geometry::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -89,7 +89,7 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
                 overlap,
                 normal,
                 velocity: sphere.velocity - (sphere.spin * arm).cross(normal),
-                normal_spin: sphere.spin.dot(normal),
+                normal_spin: T::from_f64(0.5) * sphere.spin.dot(normal),
                 effective_radius: T::from_f64(radius),
                 effective_mass: sphere.mass,
                 time_step: input.time_step,
@@ -100,15 +100,7 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
             let force = normal * response.normal_force + response.tangential_force;
             input.grains.add_load(grain, force, normal.cross(response.tangential_force) * -arm);
             total -= force.cast();
-            let energy = response.energy;
-            ledger += ContactLedger {
-                normal_elastic: energy.normal_elastic.to_f64(),
-                tangential_elastic: energy.tangential_elastic.to_f64(),
-                normal_damping: energy.normal_damping.to_f64() * dt,
-                tangential: energy.tangential.to_f64() * dt,
-                sliding: energy.sliding.to_f64() * dt,
-                ..Default::default()
-            };
+            ledger.add(&response.energy, dt);
         }
         self.force = Vec3::new(total.x, total.y, total.z);
         SlabSums { ledger, is_too_deep }

@@ -3,11 +3,10 @@
 //! A pair that starts in slab s ends in s or in s + 1, so a grain of slab s receives forces from the passes over s − 1
 //! and over s alone. The order in which slabs are worked on is the matter of [`crate::sweep`].
 
-use crate::ContactLedger;
 use crate::cell_grid::CellGrid;
 use crate::domain::Period;
 use crate::plane::PlaneList;
-use grouser_contact::{Memory, Precision, Real, Sphere};
+use grouser_contact::{ContactLedger, Memory, Precision, Real, Sphere};
 use serde::{Deserialize, Serialize};
 
 /// Two grains that may touch: the first one, and the second one together with the periodic image that is near.

@@ -1,5 +1,6 @@
-//! Where the energy of a bed is and where it went.
+//! Where the energy of many contacts is and where it went.
 
+use crate::{ContactEnergy, Real};
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
@@ -21,6 +22,16 @@ pub struct ContactLedger {
 }
 
 impl ContactLedger {
+    /// Adds one contact over one step of `time_step` [s].
+    #[inline]
+    pub fn add<T: Real>(&mut self, energy: &ContactEnergy<T>, time_step: f64) {
+        self.normal_elastic += energy.normal_elastic.to_f64();
+        self.tangential_elastic += energy.tangential_elastic.to_f64();
+        self.normal_damping += energy.normal_damping.to_f64() * time_step;
+        self.tangential += energy.tangential.to_f64() * time_step;
+        self.sliding += energy.sliding.to_f64() * time_step;
+    }
+
     /// Adds the spending of one pass to this running ledger; stored energies are those of the latest pass.
     pub fn record(&mut self, pass: &Self) {
         self.normal_elastic = pass.normal_elastic;
@@ -58,25 +69,5 @@ impl AddAssign for ContactLedger {
         self.normal_damping += other.normal_damping;
         self.tangential += other.tangential;
         self.sliding += other.sliding;
-    }
-}
-
-/// Energy of a whole bed at one instant.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct BedEnergy {
-    /// Translational kinetic energy [J].
-    pub kinetic: f64,
-    /// Rotational kinetic energy [J].
-    pub rotational: f64,
-    /// Gravitational energy relative to the origin [J].
-    pub gravitational: f64,
-    /// Contacts among grains and with planes.
-    pub contacts: ContactLedger,
-}
-
-impl BedEnergy {
-    /// Kinetic, gravitational and elastic energy [J].
-    pub fn stored(&self) -> f64 {
-        self.kinetic + self.rotational + self.gravitational + self.contacts.elastic()
     }
 }
