@@ -116,7 +116,7 @@ impl<M> SurfaceContacts<M> {
                 loads[near.index as usize].add(force, contact.normal.cross(response.tangential_force) * arm);
                 let force = force.cast::<f64>();
                 let on_surface = -Vec3::new(force.x, force.y, force.z);
-                total = total + Wrench::of_force_at(on_surface, &point, &motion.position);
+                total += Wrench::of_force_at(on_surface, &point, &motion.position);
                 pass.add(&response.energy, step.time_step);
                 let depth = overlap / radius;
                 if self.deepest.is_none_or(|deepest| depth > deepest.depth) {

@@ -55,6 +55,11 @@ impl Settling {
         self.n_steps as f64 * self.time_step
     }
 
+    /// Kinetic energy of the bed over Σ m g r now [-].
+    pub fn energy_ratio<L: ContactLaw<P::Real>, P: Precision>(&self, bed: &Bed<L, P>) -> f64 {
+        kinetic_energy_ratio(bed)
+    }
+
     /// Goes on for some steps; `Some` when the bed is at rest or the time is up.
     ///
     /// # Errors

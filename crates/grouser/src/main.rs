@@ -1,1 +1,7 @@
-fn main() {}
+//! The `grouser` program.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    grouser::cli::main()
+}

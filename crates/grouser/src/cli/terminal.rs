@@ -1,0 +1,62 @@
+//! Progress on a terminal as one line that renews itself, elsewhere as a line now and then.
+
+use crate::run::{Progress, Stage};
+use std::io::{IsTerminal, Write};
+use std::time::{Duration, Instant};
+
+pub(super) struct Terminal {
+    is_terminal: bool,
+    spoke: Option<Instant>,
+}
+
+impl Terminal {
+    pub fn new() -> Self {
+        Self { is_terminal: std::io::stderr().is_terminal(), spoke: None }
+    }
+
+    /// Ends a line that renews itself.
+    pub fn finish(&mut self) {
+        if self.is_terminal && self.spoke.take().is_some() {
+            eprintln!();
+        }
+    }
+}
+
+impl Progress for Terminal {
+    fn stage(&mut self, stage: &Stage) {
+        let text = match stage {
+            Stage::Settling { time_s, energy_ratio } => {
+                format!("settling  {time_s:.3} s simulated, kinetic energy over Σ m g r {energy_ratio:.1e}")
+            }
+            Stage::Pressing { plate, n_plates, diameter_m, done, left } => format!(
+                "plate {} of {n_plates} ({:.0} mm)  {:5.1} %  {} left",
+                plate + 1,
+                1e3 * diameter_m,
+                100.0 * done,
+                clock(*left)
+            ),
+        };
+        if self.is_terminal {
+            self.spoke = Some(Instant::now());
+            eprint!("\r\x1b[2K{text}");
+            let _ = std::io::stderr().flush();
+        } else if self.spoke.is_none_or(|spoke| spoke.elapsed() > Duration::from_secs(5)) {
+            self.spoke = Some(Instant::now());
+            eprintln!("{text}");
+        }
+    }
+
+    fn note(&mut self, text: &str) {
+        self.finish();
+        eprintln!("{text}");
+    }
+}
+
+fn clock(time: Duration) -> String {
+    let seconds = time.as_secs();
+    match seconds {
+        0..60 => format!("{seconds} s"),
+        60..3600 => format!("{} min {:02} s", seconds / 60, seconds % 60),
+        _ => format!("{} h {:02} min", seconds / 3600, seconds % 3600 / 60),
+    }
+}

@@ -1,0 +1,89 @@
+//! From the scenario's soil to a loose bed of grains, and to the key under which its settled form is kept.
+
+use super::{Law, Materials, SetupError};
+use crate::scene::{Grains, Rotation, Scenario, Side, Sizes, Soil};
+use grouser_dem::{Bed, BedSettings, Domain, Layer, Plane, RadiusDistribution, random_packing};
+use grouser_geometry::Vec3;
+use serde::Serialize;
+
+/// Solid share of the volume that a settled bed is taken to have when its layers are filled [-].
+pub const SETTLED_SOLID_FRACTION: f64 = 0.60;
+
+/// The layers of a soil as the packing wants them.
+pub fn layers(soil: &Grains, materials: &Materials) -> Vec<Layer> {
+    let area = soil.container.size_m[0] * soil.container.size_m[1];
+    let of = |layer: &crate::scene::Layer| Layer {
+        radii: match layer.sizes {
+            Sizes::Monodisperse { radius_m } => RadiusDistribution::Monodisperse(radius_m),
+            Sizes::Uniform { radius_m: (from_m, to_m) } => RadiusDistribution::Uniform { from_m, to_m },
+        },
+        n_grains: (SETTLED_SOLID_FRACTION * area * layer.depth_m / layer.sizes.mean_volume()).round()
+            as usize,
+        density: materials.elastic(&layer.material).density_kg_m3,
+        material: materials.number(&layer.material),
+    };
+    soil.layers.iter().map(of).collect()
+}
+
+/// A loose packing in its box, about to fall.
+///
+/// # Errors
+/// When the packing or the bed is refused.
+pub fn loose_bed<L: Law>(scenario: &Scenario, law: L) -> Result<Bed<L>, SetupError> {
+    let Soil::Grains(soil) = &scenario.soil;
+    let materials = Materials::of(scenario);
+    let wall = materials.number(&soil.container.material);
+    let size = Vec3::from(soil.container.size_m);
+    let sides = [soil.container.x, soil.container.y];
+    let mut domain = Domain {
+        lower: Vec3::zeros(),
+        upper: size,
+        is_periodic: [sides[0] == Side::Periodic, sides[1] == Side::Periodic, false],
+    };
+    let mut planes = vec![Plane { point: Vec3::zeros(), normal: Vec3::z(), material: wall }];
+    for (axis, side) in sides.into_iter().enumerate() {
+        if side == Side::Walled {
+            let normal = Vec3::ith(axis, 1.0);
+            planes.push(Plane { point: Vec3::zeros(), normal, material: wall });
+            planes.push(Plane { point: size, normal: -normal, material: wall });
+        }
+    }
+    let spheres = random_packing(&domain, &layers(soil, &materials), soil.seed)?;
+    // The loose packing may stand higher than the box; nothing is lost at its open top.
+    domain.upper.z = spheres.iter().fold(size.z, |top, sphere| top.max(sphere.position.z + sphere.radius));
+    let settings = BedSettings {
+        domain,
+        planes,
+        gravity: Vec3::from(scenario.gravity_m_s2),
+        rotation: match scenario.dials.rotation {
+            Rotation::Free => grouser_dem::Rotation::Free,
+            Rotation::Fixed => grouser_dem::Rotation::Fixed,
+        },
+        has_ledger: false,
+    };
+    Ok(Bed::new(spheres, settings, materials.table()?, law)?)
+}
+
+/// Everything that a settled bed depends on, as a text: beds with the same key have the same bytes.
+pub fn key(scenario: &Scenario, time_step: f64) -> String {
+    #[derive(Serialize)]
+    struct Key<'a> {
+        version: &'a str,
+        soil: &'a Soil,
+        materials: &'a std::collections::BTreeMap<String, crate::scene::Material>,
+        pairs: &'a [crate::scene::Pair],
+        gravity_m_s2: [f64; 3],
+        dials: &'a crate::scene::Dials,
+        time_step: f64,
+    }
+    let key = Key {
+        version: env!("CARGO_PKG_VERSION"),
+        soil: &scenario.soil,
+        materials: &scenario.materials,
+        pairs: &scenario.pairs,
+        gravity_m_s2: scenario.gravity_m_s2,
+        dials: &scenario.dials,
+        time_step,
+    };
+    crate::scene::dialect().to_string(&key).expect("a scenario holds nothing RON cannot write")
+}

@@ -1,0 +1,53 @@
+//! Where the surface of a bed is.
+
+use grouser_contact::Sphere;
+
+/// Mean height of the bed's surface [m]: the mean, over square cells two mean grain diameters wide, of the highest point of
+/// any grain whose centre lies in the cell.
+pub fn surface_level(spheres: &[Sphere], size: [f64; 2]) -> f64 {
+    let mean_radius = spheres.iter().map(|sphere| sphere.radius).sum::<f64>() / spheres.len() as f64;
+    let counts = size.map(|length| ((length / (4.0 * mean_radius)) as usize).max(1));
+    let mut tops = vec![f64::NEG_INFINITY; counts[0] * counts[1]];
+    for sphere in spheres {
+        let cell = |along: f64, axis: usize| {
+            ((along / size[axis] * counts[axis] as f64).max(0.0) as usize).min(counts[axis] - 1)
+        };
+        let top = &mut tops[cell(sphere.position.y, 1) * counts[0] + cell(sphere.position.x, 0)];
+        *top = top.max(sphere.position.z + sphere.radius);
+    }
+    let filled: Vec<f64> = tops.into_iter().filter(|top| top.is_finite()).collect();
+    filled.iter().sum::<f64>() / filled.len() as f64
+}
+
+/// Highest point of any grain that a disc of `radius` around (`x`, `y`) would meet on its way down [m].
+pub fn highest_below_disc(spheres: &[Sphere], [x, y]: [f64; 2], radius: f64) -> f64 {
+    let is_below = |sphere: &&Sphere| {
+        let (dx, dy) = (sphere.position.x - x, sphere.position.y - y);
+        dx.hypot(dy) < radius + sphere.radius
+    };
+    spheres.iter().filter(is_below).fold(0.0, |top, sphere| top.max(sphere.position.z + sphere.radius))
+}
+
+/// Mass of the grains over the volume between floor and surface [kg/m³].
+pub fn bulk_density(spheres: &[Sphere], size: [f64; 2], level: f64) -> f64 {
+    spheres.iter().map(|sphere| sphere.mass).sum::<f64>() / (size[0] * size[1] * level)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grouser_dem::sphere;
+    use grouser_geometry::Vec3;
+
+    #[test]
+    fn a_layer_of_equal_grains_is_level_with_their_tops() {
+        let place = |i: usize| Vec3::new(0.01 + 0.02 * (i % 10) as f64, 0.01 + 0.02 * (i / 10) as f64, 0.01);
+        let mut spheres: Vec<Sphere> = (0..100).map(|i| sphere(place(i), 0.01, 1000.0, 0)).collect();
+        assert!((surface_level(&spheres, [0.2, 0.2]) - 0.02).abs() < 1e-15);
+        assert!((highest_below_disc(&spheres, [0.1, 0.1], 0.05) - 0.02).abs() < 1e-15);
+        spheres[0].position.z = 0.03;
+        assert!((highest_below_disc(&spheres, [0.1, 0.1], 0.05) - 0.02).abs() < 1e-15);
+        assert!((highest_below_disc(&spheres, [0.0, 0.0], 0.05) - 0.04).abs() < 1e-15);
+        assert!((surface_level(&spheres, [0.2, 0.2]) - (0.02 + 0.02 / 25.0)).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,63 @@
+//! Running a scene: the bed, the tools, and the files that a run leaves.
+
+mod bed;
+mod cache;
+mod estimate;
+mod law;
+mod level;
+mod materials;
+mod outcome;
+mod press;
+mod progress;
+mod report;
+mod results;
+mod state;
+mod time_step;
+mod tool;
+
+pub use bed::SETTLED_SOLID_FRACTION;
+pub use estimate::{Estimate, estimate};
+pub use law::{Law, WithLaw, with_law};
+pub use materials::Materials;
+pub use outcome::{Ended, RunError};
+pub use press::{PressLedger, Pressing};
+pub use progress::{Progress, Stage};
+pub use state::{Options, run};
+pub use time_step::{COLLISION_FRACTION, TRAVEL_FRACTION, time_step};
+
+use grouser_contact::ParameterError;
+use grouser_dem::{BedError, PackingError};
+
+/// Why a checked scenario cannot be built after all.
+#[derive(Debug, thiserror::Error)]
+pub enum SetupError {
+    /// A material constant.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// The packing.
+    #[error(transparent)]
+    Packing(#[from] PackingError),
+    /// The bed.
+    #[error(transparent)]
+    Bed(#[from] BedError),
+    /// The shape of a tool.
+    #[error(transparent)]
+    Shape(#[from] grouser_geometry::generate::ShapeError),
+    /// The motion of a tool.
+    #[error(transparent)]
+    Rigid(#[from] grouser_rigid::RigidError),
+    /// The settling bed did not come to rest.
+    #[error(
+        "the bed did not settle within {longest_s} s: kinetic energy over Σ m g r is {ratio:.1e}, expected {asked:.1e}; \
+         usual cause: grains that lose too little (restitution near 1) or a very deep bed; \
+         remedy: raise soil.settle.longest_s, or lower the restitution"
+    )]
+    NotSettled {
+        /// Time allowed [s].
+        longest_s: f64,
+        /// Ratio reached [-].
+        ratio: f64,
+        /// Ratio asked for [-].
+        asked: f64,
+    },
+}

@@ -1,0 +1,177 @@
+//! The report: one self-contained page.
+
+use super::results::Comparison;
+use crate::calibration::{Estimated, PlateFit};
+use crate::output::chart::Chart;
+use crate::output::summary::{Status, Summary};
+use crate::scene::{Scenario, resolved};
+use std::fmt::Write;
+
+const STYLE: &str = include_str!("report.css");
+
+/// The page of a run.
+pub fn page(
+    scenario: &Scenario,
+    summary: &Summary,
+    charts: &[(&str, Chart)],
+    comparison: &Comparison,
+) -> String {
+    let mut body = String::new();
+    let status = match summary.status {
+        Status::Done => "done",
+        Status::Failed => "failed",
+        Status::Interrupted => "interrupted",
+    };
+    let _ = write!(
+        body,
+        "<header><p class=kicker>grouser {} · {status}</p><h1>{}</h1><p class=lead>{}</p></header>",
+        summary.version,
+        escaped(&scenario.title),
+        escaped(&scenario.description)
+    );
+    if let Some(error) = &summary.error {
+        let _ =
+            write!(body, "<section class=error><h2>What went wrong</h2><p>{}</p></section>", escaped(error));
+    }
+    body += &verdict(comparison);
+    for (_, chart) in charts {
+        if let Ok(svg) = chart.to_inline_svg() {
+            let _ = write!(body, "<figure>{svg}</figure>");
+        }
+    }
+    body += &fits(comparison);
+    let rows = summary.metrics.iter().map(|m| {
+        let reference = m.reference.map_or(String::new(), number);
+        let ratio = m.reference.filter(|r| *r != 0.0).map_or(String::new(), |r| number(m.value / r));
+        let uncertainty = m.uncertainty.map_or(String::new(), |u| format!("± {}", number(u)));
+        vec![m.name.clone(), number(m.value), uncertainty, m.unit.clone(), reference, ratio]
+    });
+    body += &table("Metrics", &["", "value", "95 %", "unit", "reference", "value / reference"], rows);
+    let t = &summary.time;
+    let pace = if t.wall_s > 0.0 { t.steps as f64 / t.wall_s } else { 0.0 };
+    let rows = [
+        ("simulated", format!("{} s in {} steps", number(t.simulated_s), t.steps)),
+        (
+            "by the clock",
+            format!("{:.1} s, of which {:.1} s before the first plate moved", t.wall_s, t.setup_s),
+        ),
+        (
+            "processor",
+            t.cpu_s.map_or("unknown".into(), |s| format!("{s:.1} s on {} threads", summary.threads)),
+        ),
+        ("pace", format!("{pace:.0} steps a second, {}", summary.host)),
+    ];
+    body += &table("Time", &["", ""], rows.map(|(name, text)| vec![name.to_owned(), text]).into_iter());
+    let step = &summary.time_step;
+    let rows = step.criteria.iter().map(|c| {
+        let mark = if c.name == step.binding { "◆ " } else { "" };
+        vec![format!("{mark}{}", c.name), format!("{} s", number(c.critical_s)), c.place.clone()]
+    });
+    let title = format!("Time step {} s, bound by: {}", number(step.dt_s), step.binding);
+    body += &table(&title, &["criterion", "critical time", "where"], rows);
+    let rows =
+        summary.energy.entries.iter().map(|e| vec![e.name.clone(), format!("{} J", number(e.value_J))]);
+    let title = format!("Energy, residual {:.3} % of the work", 100.0 * summary.energy.residual_fraction);
+    body += &table(&title, &["", ""], rows);
+    let rows = summary.conventions.iter().map(|(name, text)| vec![(*name).to_owned(), text.clone()]);
+    body += &table("Conventions", &["", ""], rows);
+    let _ = write!(
+        body,
+        "<details><summary>Resolved scenario</summary><pre>{}</pre></details>",
+        escaped(&resolved(scenario))
+    );
+    format!(
+        "<!doctype html>\n<html lang=en><meta charset=utf-8><meta name=viewport content=\"width=device-width\">\
+         <title>{}</title><style>{STYLE}</style><main>{body}</main></html>\n",
+        escaped(&scenario.title)
+    )
+}
+
+/// How far simulation and measurement are apart, in words.
+fn verdict(comparison: &Comparison) -> String {
+    let ratios: Vec<f64> = comparison
+        .plates
+        .iter()
+        .flat_map(|plate| comparison.differences(plate))
+        .map(|(_, simulated, measured)| simulated / measured)
+        .filter(|ratio| ratio.is_finite() && *ratio > 0.0)
+        .collect();
+    let Some(measured) = comparison.measured.filter(|_| !ratios.is_empty()) else { return String::new() };
+    let mean = (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp();
+    let (low, high) = ratios.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), r| (l.min(*r), h.max(*r)));
+    let sentence = format!(
+        "Simulated pressure is {mean:.2} times the measured one on geometric average over {} points; the ratio runs from \
+         {low:.2} to {high:.2}.",
+        ratios.len()
+    );
+    format!(
+        "<section class=verdict><h2>How far apart</h2><p>{sentence}</p><p class=source>Measurement: {}</p></section>",
+        escaped(&measured.source)
+    )
+}
+
+fn fits(comparison: &Comparison) -> String {
+    let rows = [("simulation", &comparison.fit), ("measurement", &comparison.fit_measured)]
+        .into_iter()
+        .filter_map(|(name, fit)| fit.as_ref().map(|fit: &PlateFit| (name, fit)))
+        .map(|(name, fit)| {
+            let of = |e: &Estimated, scale: f64| {
+                format!("{} ± {}", number(scale * e.value), number(scale * e.half_width))
+            };
+            vec![
+                name.to_owned(),
+                of(&fit.k_c, 1e-3),
+                of(&fit.k_phi, 1e-3),
+                of(&fit.n, 1.0),
+                format!("{:.1} %", 100.0 * fit.relative_rms),
+                fit.n_points.to_string(),
+            ]
+        })
+        .collect::<Vec<_>>();
+    if rows.is_empty() {
+        return String::new();
+    }
+    let heads = ["", "k_c [kPa/m^(n−1)]", "k_φ [kPa/mⁿ]", "n [-]", "rms / mean", "points"];
+    table("p = (k_c/b + k_φ) zⁿ with b the plate's radius, ± 95 % confidence", &heads, rows.into_iter())
+}
+
+fn table(title: &str, heads: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
+    let mut text = format!("<section><h2>{}</h2><div class=scroll><table>", escaped(title));
+    if heads.iter().any(|head| !head.is_empty()) {
+        let cells: String = heads.iter().map(|head| format!("<th>{}</th>", escaped(head))).collect();
+        let _ = write!(text, "<thead><tr>{cells}</tr></thead>");
+    }
+    for row in rows {
+        let cells: String = row.iter().map(|cell| format!("<td>{}</td>", escaped(cell))).collect();
+        let _ = write!(text, "<tr>{cells}</tr>");
+    }
+    text + "</table></div></section>"
+}
+
+/// Four significant digits.
+fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    if (-3..6).contains(&exponent) {
+        format!("{value:.*}", (3 - exponent).max(0) as usize)
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_four_digits_and_text_is_harmless() {
+        assert_eq!([12345.6, 0.012345, 1.5e-7, 0.0].map(number), ["12346", "0.01234", "1.500e-7", "0"]);
+        assert_eq!(escaped("<b a=\"&\">"), "&lt;b a=&quot;&amp;&quot;&gt;");
+    }
+}

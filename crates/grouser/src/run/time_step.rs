@@ -1,0 +1,91 @@
+//! The time step of a scene: the smallest over all criteria, all pairs, walls and tools included.
+
+use super::Materials;
+use crate::scene::{Motion, Scenario, Soil, Tool};
+use grouser_contact::{Material, PairProperties, ParameterError};
+use grouser_dem::{Criterion, TimeStep};
+
+/// Share of the Hertz collision time that a step may take: about 25 steps an impact.
+pub const COLLISION_FRACTION: f64 = 0.04;
+/// Share of the smallest radius that anything may travel in a step.
+pub const TRAVEL_FRACTION: f64 = 0.05;
+
+/// The step and its criteria. The dial `time_step_fraction` is the share of the Rayleigh time; the other criteria have
+/// fixed shares and bind only in fast or very stiff scenes.
+///
+/// # Errors
+/// When a constant is out of range, which a checked scenario excludes.
+pub fn time_step(scenario: &Scenario) -> Result<TimeStep, ParameterError> {
+    let Soil::Grains(soil) = &scenario.soil;
+    let materials = Materials::of(scenario);
+    let fraction = scenario.dials.time_step_fraction;
+    let gravity = scenario.gravity_m_s2.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let Some(Motion::Press(press)) = &scenario.motion else {
+        return smallest(scenario, soil, &materials, fraction, gravity, 0.0);
+    };
+    smallest(scenario, soil, &materials, fraction, gravity, press.speed_m_s)
+}
+
+fn smallest(
+    scenario: &Scenario,
+    soil: &crate::scene::Grains,
+    materials: &Materials,
+    fraction: f64,
+    gravity: f64,
+    tool_speed: f64,
+) -> Result<TimeStep, ParameterError> {
+    // The fastest grain: a fall through the loose packing, or the tool.
+    let depth: f64 = soil.layers.iter().map(|layer| layer.depth_m).sum();
+    let fall = (2.0 * gravity * depth).sqrt();
+    let speed = fall.max(tool_speed);
+    let mut criteria = Vec::new();
+    for (number, layer) in soil.layers.iter().enumerate() {
+        let material = materials.elastic(&layer.material);
+        let radius = layer.sizes.range().0;
+        let place = format!("smallest grain of layer {number}, radius {radius} m, \"{}\"", layer.material);
+        criteria.push(Criterion::rayleigh(&material, radius, fraction, &place));
+        criteria.push(Criterion::travel(
+            radius,
+            speed,
+            TRAVEL_FRACTION,
+            format!("{place}, at {speed:.2} m/s"),
+        ));
+        let mass = material.density_kg_m3 * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+        let mut partners = vec![(soil.container.material.as_str(), "the box", f64::INFINITY, fall)];
+        partners.extend(
+            soil.layers.iter().map(|other| (other.material.as_str(), "a grain", other.sizes.range().0, fall)),
+        );
+        if let Some(Tool::Plates(plates)) = &scenario.tool {
+            partners.push((plates.material.as_str(), "the plate", f64::INFINITY, tool_speed));
+        }
+        for (partner, called, its_radius, speed) in partners {
+            if speed <= 0.0 {
+                continue;
+            }
+            let pair = pair(materials, &layer.material, partner)?;
+            let other: Material = materials.elastic(partner);
+            let its_mass = other.density_kg_m3 * 4.0 / 3.0 * std::f64::consts::PI * its_radius.powi(3);
+            let (effective_radius, effective_mass) = (harmonic(radius, its_radius), harmonic(mass, its_mass));
+            let place = format!("{place}, against {called} \"{partner}\" at {speed:.2} m/s");
+            criteria.push(Criterion::hertz(
+                &pair,
+                effective_radius,
+                effective_mass,
+                speed,
+                COLLISION_FRACTION,
+                place,
+            ));
+        }
+    }
+    Ok(TimeStep::smallest(criteria).expect("a checked scene has a layer"))
+}
+
+fn pair(materials: &Materials, a: &str, b: &str) -> Result<PairProperties, ParameterError> {
+    let interaction = materials.interaction(a, b);
+    PairProperties::new(&materials.elastic(a), &materials.elastic(b), &interaction, materials.tail())
+}
+
+/// 1/(1/a + 1/b), also for an infinite b.
+fn harmonic(a: f64, b: f64) -> f64 {
+    1.0 / (1.0 / a + 1.0 / b)
+}

@@ -1,0 +1,105 @@
+//! Cases with an analytical or published answer. One case is one function; a new one is a row of [`cases`].
+
+mod bodies;
+mod chung_ooi;
+mod two_bodies;
+
+use serde::Serialize;
+
+/// A number, what it should be, and how far it may be off.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// Name of the case.
+    pub case: String,
+    /// What is compared.
+    pub quantity: String,
+    /// What grouser finds.
+    pub computed: f64,
+    /// What it should be.
+    pub reference: f64,
+    /// Largest allowed difference, in the unit of the quantity.
+    pub tolerance: f64,
+    /// Unit.
+    pub unit: String,
+    /// Where the reference is from.
+    pub source: String,
+    /// The difference is within the tolerance.
+    pub pass: bool,
+}
+
+impl Row {
+    /// A comparison with an absolute tolerance.
+    pub fn absolute(
+        (case, source): (&str, &str),
+        quantity: impl Into<String>,
+        unit: &str,
+        computed: f64,
+        (reference, tolerance): (f64, f64),
+    ) -> Self {
+        Self {
+            case: case.into(),
+            quantity: quantity.into(),
+            computed,
+            reference,
+            tolerance,
+            unit: unit.into(),
+            source: source.into(),
+            pass: (computed - reference).abs() <= tolerance,
+        }
+    }
+
+    /// A comparison with a tolerance relative to the reference.
+    pub fn relative(
+        case: (&str, &str),
+        quantity: impl Into<String>,
+        unit: &str,
+        computed: f64,
+        (reference, tolerance): (f64, f64),
+    ) -> Self {
+        Self::absolute(case, quantity, unit, computed, (reference, tolerance * reference.abs()))
+    }
+
+    /// The row as a line of text.
+    pub fn line(&self) -> String {
+        let number = |value: f64| {
+            if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+                format!("{value:.6}")
+            } else {
+                format!("{value:.6e}")
+            }
+        };
+        let mark = if self.pass { "pass" } else { "FAIL" };
+        format!(
+            "  {mark}  {:<52} {:>16} {:>16} ± {:<10.1e} {:<6} {}",
+            self.quantity,
+            number(self.computed),
+            number(self.reference),
+            self.tolerance,
+            self.unit,
+            self.source
+        )
+    }
+}
+
+/// A named case.
+pub struct Case {
+    /// Name.
+    pub name: &'static str,
+    /// Computes its rows.
+    pub rows: fn() -> Vec<Row>,
+}
+
+/// Every case.
+pub fn cases() -> &'static [Case] {
+    &[
+        Case { name: "chung-ooi-1 two elastic spheres", rows: chung_ooi::test_1 },
+        Case { name: "chung-ooi-2 elastic sphere on a wall", rows: chung_ooi::test_2 },
+        Case { name: "chung-ooi-3 restitution", rows: chung_ooi::test_3 },
+        Case { name: "chung-ooi-4 oblique impacts", rows: chung_ooi::test_4 },
+        Case { name: "chung-ooi-7 spinning spheres", rows: chung_ooi::test_7 },
+        Case { name: "slip-to-roll", rows: two_bodies::slip_to_roll },
+        Case { name: "rolling on an incline", rows: two_bodies::incline },
+        Case { name: "free fall with bounces", rows: two_bodies::bounces },
+        Case { name: "a stack at rest", rows: two_bodies::stack },
+    ]
+}
