@@ -16,6 +16,8 @@ const SAME_CONTACT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 #[serde(bound = "M: Serialize + serde::de::DeserializeOwned")]
 pub struct SurfaceContacts<M> {
     surface: TriangleSurface,
+    /// Distance of the farthest vertex from the origin of the body frame [m].
+    farthest: f64,
     material: u32,
     candidates: Candidates,
     /// Contacts of the last step, by rising number of the grain.
@@ -61,6 +63,7 @@ impl<M> SurfaceContacts<M> {
     /// The mesh doctor must have found it sound.
     pub fn new(surface: TriangleSurface, material: u32) -> Self {
         Self {
+            farthest: surface.vertices.iter().fold(0.0, |most, vertex| most.max(vertex.norm())),
             surface,
             material,
             candidates: Candidates::default(),
@@ -86,8 +89,7 @@ impl<M> SurfaceContacts<M> {
         M: Memory<P::Real>,
     {
         // 1. Grains near the surface.
-        let farthest = self.surface.vertices.iter().fold(0.0_f64, |most, vertex| most.max(vertex.norm()));
-        let speed = step.fastest + motion.velocity.norm() + motion.spin.norm() * farthest;
+        let speed = step.fastest + motion.velocity.norm() + motion.spin.norm() * self.farthest;
         self.candidates.refresh(&self.surface, motion, (spheres, ids), speed * step.time_step);
 
         let mut total = Wrench::default();

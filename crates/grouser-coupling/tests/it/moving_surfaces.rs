@@ -1,8 +1,8 @@
 //! Surfaces in motion: lists against brute force, memory against closed forms, energy against work.
 
 use grouser_contact::*;
-use grouser_coupling::{Step, SurfaceContacts, touches};
-use grouser_geometry::generate::{GrouseredWheel, grousered_wheel, plane};
+use grouser_coupling::{Step, SurfaceContacts, closest_point, touches};
+use grouser_geometry::generate::{GrouseredWheel, cone, cuboid, cylinder, grousered_wheel, icosphere, plane};
 use grouser_geometry::{RigidMotion, TriangleSurface, Vec3};
 use grouser_rigid::{BodySpec, Degree, Freedom, RigidBody, VelocityProfile};
 
@@ -180,4 +180,64 @@ fn work_of_an_oscillating_plate_is_the_energy_of_the_bead_and_of_the_contact() {
     };
     let (coarse, fine) = (residual(40_000).abs(), residual(160_000).abs());
     assert!(fine < 1e-3 && fine < 0.5 * coarse, "{coarse:e} {fine:e}");
+}
+
+#[test]
+fn contacts_written_and_read_back_continue_byte_for_byte() {
+    let table = table();
+    let mut sphere = bead(Vec3::new(0.003, 0.011, 0.99 * RADIUS));
+    sphere.velocity = Vector::new(0.3, 0.2, -0.1);
+    let go = |contacts: &mut SurfaceContacts<Vector<f64>>, sphere: &mut Sphere| {
+        for _ in 0..2000 {
+            sphere.position += sphere.velocity * 1e-5;
+            let mut loads = [Load::default()];
+            let step = Step { fastest: sphere.velocity.norm(), ..step(&table) };
+            contacts.forces(&RigidMotion::default(), (&[*sphere], &[3]), &mut loads, &step);
+            sphere.velocity += loads[0].force * (1e-5 / sphere.mass);
+            sphere.spin += loads[0].torque * (1e-5 / sphere.inertia());
+        }
+    };
+    let mut straight = SurfaceContacts::new(plane(0.4, 0.4, 40, 40).unwrap(), 0);
+    go(&mut straight, &mut sphere);
+    let checkpoint = postcard::to_allocvec(&straight).unwrap();
+    let (mut resumed, mut other): (SurfaceContacts<Vector<f64>>, _) =
+        (postcard::from_bytes(&checkpoint).unwrap(), sphere);
+    go(&mut straight, &mut sphere);
+    go(&mut resumed, &mut other);
+    assert_eq!(sphere, other);
+    assert_eq!(postcard::to_allocvec(&straight).unwrap(), postcard::to_allocvec(&resumed).unwrap());
+}
+
+#[test]
+fn convex_bodies_are_touched_once_at_their_closest_point_from_every_side() {
+    let shapes = [
+        cuboid(Vec3::new(0.03, 0.05, 0.02)).unwrap(),
+        cylinder(0.02, 0.03, 17).unwrap(),
+        cone(0.03, 0.04, 9).unwrap(),
+        icosphere(0.02, 2).unwrap(),
+    ];
+    for (shape, surface) in shapes.iter().enumerate() {
+        let every_triangle: Vec<u32> = (0..surface.triangles.len() as u32).collect();
+        let mut n_touches = 0;
+        for k in 0..1500 {
+            let n = f64::from(k) * 0.7548776662466927;
+            let direction = Vec3::new((9.7 * n).sin(), (5.3 * n).cos(), (3.1 * n).sin()).normalize();
+            let [a, b, c] = surface.corners(k as usize % surface.triangles.len());
+            let (u, v) = ((n * 1.3247).fract(), (n * 7.1317).fract() * 1.2);
+            let place = a + (b - a) * u + (c - a) * (v * (1.0 - u)) + direction * (0.9 * RADIUS);
+            let distance = (0..surface.triangles.len())
+                .map(|t| (closest_point(&place, &surface.corners(t)).0 - place).norm())
+                .fold(f64::INFINITY, f64::min);
+            let is_outside = (0..surface.triangles.len())
+                .any(|t| surface.normal(t).dot(&(place - surface.corners(t)[0])) > 0.0);
+            if !is_outside || !(0.8 * RADIUS..RADIUS).contains(&distance) {
+                continue;
+            }
+            let found = touches(surface, &every_triangle, &place, RADIUS);
+            assert_eq!(found.len(), 1, "shape {shape} at {place}: {found:?}");
+            assert_eq!(found[0].distance, distance);
+            n_touches += 1;
+        }
+        assert!(n_touches > 100, "shape {shape}: {n_touches}");
+    }
 }
