@@ -1,5 +1,6 @@
 //! Which triangles each grain may touch soon: parry's bounding-volume hierarchy, asked only now and then.
 
+use crate::closest_point;
 use grouser_contact::{Precision, Real, Sphere};
 use grouser_geometry::{RigidMotion, TriangleSurface, Vec3};
 use parry3d_f64::bounding_volume::Aabb;
@@ -72,7 +73,11 @@ impl Candidates {
             if !overlap(&bounds, &around) {
                 continue;
             }
-            let mut triangles: Vec<u32> = hierarchy.intersect_aabb(&around).collect();
+            let is_near = |&triangle: &u32| {
+                let (point, _) = closest_point(&centre, &surface.corners(triangle as usize));
+                (point - centre).norm() < reach
+            };
+            let mut triangles: Vec<u32> = hierarchy.intersect_aabb(&around).filter(is_near).collect();
             if !triangles.is_empty() {
                 triangles.sort_unstable();
                 found.push((ids[index], index as u32, triangles));

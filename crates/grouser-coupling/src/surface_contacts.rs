@@ -1,7 +1,7 @@
 //! Contacts between grains and a triangle surface that moves as a rigid body.
 
 use crate::candidates::{Candidates, centre};
-use crate::neighbourhood::touches;
+use crate::neighbourhood::{Touch, touches};
 use grouser_contact::{
     Contact, ContactLaw, ContactLedger, Load, Memory, PairTable, Precision, Real, Sphere, Vector,
 };
@@ -16,6 +16,8 @@ const SAME_CONTACT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 #[serde(bound = "M: Serialize + serde::de::DeserializeOwned")]
 pub struct SurfaceContacts<M> {
     surface: TriangleSurface,
+    /// Distance of the farthest vertex from the origin of the body frame [m].
+    farthest: f64,
     material: u32,
     candidates: Candidates,
     /// Contacts of the last step, by rising number of the grain.
@@ -40,7 +42,7 @@ pub struct Deepest {
     pub grain: u32,
     /// Its centre [m].
     pub position: Vec3,
-    /// Overlap over radius [-].
+    /// Overlap over radius [-]; above 1 for a grain whose centre has passed through the surface.
     pub depth: f64,
 }
 
@@ -61,6 +63,7 @@ impl<M> SurfaceContacts<M> {
     /// The mesh doctor must have found it sound.
     pub fn new(surface: TriangleSurface, material: u32) -> Self {
         Self {
+            farthest: surface.vertices.iter().fold(0.0, |most, vertex| most.max(vertex.norm())),
             surface,
             material,
             candidates: Candidates::default(),
@@ -86,8 +89,7 @@ impl<M> SurfaceContacts<M> {
         M: Memory<P::Real>,
     {
         // 1. Grains near the surface.
-        let farthest = self.surface.vertices.iter().fold(0.0_f64, |most, vertex| most.max(vertex.norm()));
-        let speed = step.fastest + motion.velocity.norm() + motion.spin.norm() * farthest;
+        let speed = step.fastest + motion.velocity.norm() + motion.spin.norm() * self.farthest;
         self.candidates.refresh(&self.surface, motion, (spheres, ids), speed * step.time_step);
 
         let mut total = Wrench::default();
@@ -99,10 +101,12 @@ impl<M> SurfaceContacts<M> {
             let (radius, position) = (sphere.radius.to_f64(), centre(sphere));
             let in_body = motion.point_in_body(&position);
             // 2. One contact for each smooth neighbourhood.
-            for touch in touches(&self.surface, triangles, &in_body, radius) {
+            let touches = touches(&self.surface, triangles, &in_body, radius);
+            let normals: Vec<Vec3> = touches.iter().map(|t| normal_of(t, &in_body, &self.surface)).collect();
+            for (k, touch) in touches.iter().enumerate() {
                 // 3. What it remembers: the contact of this grain whose normal was nearest.
-                let normal_in_body = (in_body - touch.point) / touch.distance;
-                let memory = recall(&self.remembered, near.id, &normal_in_body).unwrap_or_default();
+                let normal_in_body = normals[k];
+                let memory = recall(&self.remembered, near.id, &normals, k).unwrap_or_default();
                 // 4. The law.
                 let (point, normal) = (motion.point(&touch.point), motion.orientation * normal_in_body);
                 let overlap = radius - touch.distance;
@@ -118,7 +122,10 @@ impl<M> SurfaceContacts<M> {
                 let on_surface = -Vec3::new(force.x, force.y, force.z);
                 total += Wrench::of_force_at(on_surface, &point, &motion.position);
                 pass.add(&response.energy, step.time_step);
-                let depth = overlap / radius;
+                let separated = contact.velocity.dot(contact.normal).to_f64() * step.time_step;
+                // 6. A centre that was on the other side before this step has passed through the surface.
+                let has_passed = separated > touch.distance;
+                let depth = if has_passed { 1.0 + touch.distance / radius } else { overlap / radius };
                 if self.deepest.is_none_or(|deepest| depth > deepest.depth) {
                     self.deepest = Some(Deepest { grain: near.id, position, depth });
                 }
@@ -150,16 +157,27 @@ impl<M> SurfaceContacts<M> {
     }
 }
 
-/// Memory of the contact of grain `id` whose normal was nearest to `normal`.
-fn recall<M: Copy>(remembered: &[Remembered<M>], id: u32, normal: &Vec3) -> Option<M> {
+/// Unit vector from the point of a touch to the centre, in the body frame; the triangle's own normal where they coincide.
+fn normal_of(touch: &Touch, centre: &Vec3, surface: &TriangleSurface) -> Vec3 {
+    (centre - touch.point).try_normalize(0.0).unwrap_or_else(|| surface.normal(touch.triangle as usize))
+}
+
+/// Memory of the contact of grain `id` whose normal was nearest to `normals[k]`, among those that no other of the grain's
+/// present contacts is nearer to: one memory has one heir.
+fn recall<M: Copy>(remembered: &[Remembered<M>], id: u32, normals: &[Vec3], k: usize) -> Option<M> {
+    let is_heir = |normal: &Vec3| {
+        let mine = normals[k].dot(normal);
+        (normals.iter().enumerate())
+            .all(|(other, n)| other == k || n.dot(normal) < mine || (n.dot(normal) == mine && k < other))
+    };
     let first = remembered.partition_point(|contact| contact.id < id);
     remembered[first..]
         .iter()
         .take_while(|contact| contact.id == id)
-        .map(|contact| (contact.normal.dot(normal), contact.memory))
-        .filter(|(likeness, _)| *likeness > SAME_CONTACT)
+        .map(|contact| (contact.normal.dot(&normals[k]), contact))
+        .filter(|(likeness, contact)| *likeness > SAME_CONTACT && is_heir(&contact.normal))
         .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, memory)| memory)
+        .map(|(_, contact)| contact.memory)
 }
 
 /// The contact as the law sees it, in the precision of the bed.

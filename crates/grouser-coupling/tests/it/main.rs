@@ -1,5 +1,7 @@
 //! Spheres on triangle surfaces against planes, closed forms and the surfaces' own facets.
 
+mod moving_surfaces;
+
 use grouser_contact::*;
 use grouser_coupling::*;
 use grouser_geometry::generate::{cone, cuboid, icosphere, plane};
