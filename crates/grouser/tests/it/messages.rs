@@ -1,0 +1,89 @@
+//! Every wrong input is named with its place, what was expected and the usual cause; numerical failure with step, time,
+//! grain and remedy.
+
+use crate::{CUP, errors, grouser};
+use std::fs;
+
+/// Runs `check` on the cup with one text replaced; returns exit status and message.
+fn check(from: &str, to: &str) -> (Option<i32>, String) {
+    let home = tempfile::tempdir().unwrap();
+    let scene = home.path().join("cup.ron");
+    assert!(CUP.contains(from), "{from}");
+    fs::write(&scene, CUP.replacen(from, to, 1)).unwrap();
+    let output = grouser(home.path(), &["check", &scene.display().to_string()]);
+    (output.status.code(), errors(&output))
+}
+
+#[test]
+fn wrong_scenarios_are_refused_with_line_column_expectation_and_cause() {
+    let cases = [
+        ("restitution: 0.3", "restitutoin: 0.3", "cup.ron:4:", "unknown key `restitutoin`"),
+        ("young_pa: 1e7", "young_pa: \"1e7\"", "cup.ron:4:", "this value is"),
+        ("radius_m: (0.0045, 0.0055)", "radius_m: (-0.0045, 0.0055)", "cup.ron:9:", "is -0.0045"),
+        ("restitution: 0.3", "restitution: 1.2", "cup.ron:4:", "is 1.2"),
+        ("restitution: 0.3", "restitution: 0", "cup.ron:4:", "is 0"),
+        ("depth_m: 0.04", "depth_m: 0.004", "cup.ron:9:", "the bed would be empty"),
+        (
+            "layers: [(material: \"sand\", sizes: Uniform(radius_m: (0.0045, 0.0055)), depth_m: 0.04)]",
+            "layers: []",
+            "cup.ron:9:",
+            "the bed is empty",
+        ),
+        ("gap_m: 0.001", "gap_m: -0.001", "cup.ron:12:", "the tool starts inside the bed"),
+        ("young_pa: 1e7", "young_pa: 1e3", "cup.ron:4:", "the bed cannot carry its own weight"),
+        ("material: \"steel\")", "material: \"steal\")", "cup.ron:11:", "there is no material \"steal\""),
+        ("poisson: 0.25", "poisson: 0.7", "cup.ron:4:", "is 0.7"),
+        ("title: \"A cup of sand\",", "title: \"A cup of sand\"", "cup.ron:3:", "this is not a scenario"),
+    ];
+    for (from, to, place, what) in cases {
+        let (status, message) = check(from, to);
+        assert_eq!(status, Some(2), "{to}: {message}");
+        assert!(message.contains(place) && message.contains(what), "{to}: {message}");
+        assert!(message.contains("expected:") && message.contains("usual cause:"), "{to}: {message}");
+    }
+}
+
+#[test]
+fn a_missing_file_and_a_wrong_override_are_refused() {
+    let home = tempfile::tempdir().unwrap();
+    let absent = grouser(home.path(), &["check", "nowhere.ron"]);
+    assert_eq!(absent.status.code(), Some(2));
+    assert!(errors(&absent).contains("nowhere.ron") && errors(&absent).contains("usual cause"));
+    let scene = home.path().join("cup.ron");
+    fs::write(&scene, CUP).unwrap();
+    let scene = scene.display().to_string();
+    let output = grouser(home.path(), &["check", &scene, "--set", "soil.layers[0].depht_m=0.1"]);
+    assert_eq!(output.status.code(), Some(2), "{}", errors(&output));
+    let output = grouser(home.path(), &["check", &scene, "--set", "dials.rotation=Spinning"]);
+    assert_eq!(output.status.code(), Some(2), "{}", errors(&output));
+    assert!(errors(&output).contains("`Fixed`"), "{}", errors(&output));
+}
+
+#[test]
+fn nothing_is_left_behind_by_a_refused_scenario() {
+    let home = tempfile::tempdir().unwrap();
+    let scene = home.path().join("cup.ron");
+    fs::write(&scene, CUP.replace("poisson: 0.25", "poisson: 7")).unwrap();
+    let out = home.path().join("out");
+    let arguments = ["run", &scene.display().to_string(), "--out", &out.display().to_string()];
+    assert_eq!(grouser(home.path(), &arguments).status.code(), Some(2));
+    assert!(!out.exists());
+}
+
+#[test]
+fn a_tool_too_fast_for_its_bed_fails_with_step_time_grain_and_remedy_and_keeps_a_checkpoint() {
+    let home = tempfile::tempdir().unwrap();
+    let scene = home.path().join("cup.ron");
+    fs::write(&scene, CUP.replace("speed_m_s: 0.3", "speed_m_s: 60")).unwrap();
+    let out = home.path().join("out");
+    let output =
+        grouser(home.path(), &["run", &scene.display().to_string(), "--out", &out.display().to_string()]);
+    let message = errors(&output);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    for part in ["grain ", "(step ", " s, plate of 30 mm)", "remedy: ", "checkpoint was kept"] {
+        assert!(message.contains(part), "{part} is not in: {message}");
+    }
+    assert!(out.join("checkpoint.bin").is_file());
+    let summary = fs::read_to_string(out.join("summary.json")).unwrap();
+    assert!(summary.contains("\"status\": \"failed\"") && summary.contains("\"error\""));
+}
