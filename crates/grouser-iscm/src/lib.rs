@@ -1,0 +1,6 @@
+//! Integration soil contact model (ISCM): wheeled and tracked vehicles on soft ground.
+pub mod contact;
+pub mod imprint;
+pub mod polygon;
+pub mod pressure;
+pub mod terrain;

@@ -1,0 +1,263 @@
+//! Pressure integrated over one triangle of ground by equal sub-triangles (P2 Eqs. (5)–(8)).
+
+use serde::{Deserialize, Serialize};
+
+use crate::pressure::interpolate;
+
+/// How a triangle is integrated of which only some corners are loaded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PartialLoad {
+    /// P2 Eq. (6): a sub-triangle counts whole or not at all; points of the ground are loaded or not.
+    Step,
+    /// Shares of the corners interpolated: the covered part of a point's cell is its share.
+    #[default]
+    Proportional,
+}
+
+/// Centres of the R² sub-triangles as barycentric coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SubTriangles {
+    resolution: usize,
+    centres: Vec<[f64; 3]>,
+    second_moments: [[f64; 3]; 3],
+}
+
+impl SubTriangles {
+    /// Divides the sides of a triangle into `resolution` ≥ 1 parts.
+    pub fn new(resolution: usize) -> Self {
+        let n = resolution.max(1);
+        let thirds = 3.0 * n as f64;
+        let mut centres = Vec::with_capacity(n * n);
+        for i in 0..n {
+            for j in 0..n - i {
+                let (a, b) = ((3 * i + 1) as f64 / thirds, (3 * j + 1) as f64 / thirds);
+                centres.push([1.0 - a - b, a, b]);
+                if i + j + 1 < n {
+                    let (a, b) = ((3 * i + 2) as f64 / thirds, (3 * j + 2) as f64 / thirds);
+                    centres.push([1.0 - a - b, a, b]);
+                }
+            }
+        }
+        let mut second_moments = [[0.0; 3]; 3];
+        for b in &centres {
+            for k in 0..3 {
+                for l in 0..3 {
+                    second_moments[k][l] += b[k] * b[l] / (n * n) as f64;
+                }
+            }
+        }
+        Self { resolution: n, centres, second_moments }
+    }
+
+    /// Parts per side.
+    pub fn resolution(&self) -> usize {
+        self.resolution
+    }
+
+    /// Barycentric centres of the sub-triangles, each of the same area.
+    pub fn centres(&self) -> &[[f64; 3]] {
+        &self.centres
+    }
+}
+
+/// What the ground under one triangle answers.
+pub(crate) trait Response: Copy {
+    /// Pressure \[Pa\] and its slope \[Pa/m\] at barycentric `b` and sinkage `z` \[m\].
+    fn pressure(&self, b: &[f64; 3], z: f64) -> (f64, f64);
+    /// The slope \[Pa/m\] where pressure is proportional to sinkage for all of `z`.
+    #[inline(always)]
+    fn constant_slope(&self, _z: &[f64; 3]) -> Option<f64> {
+        None
+    }
+}
+
+/// Soil with one array for the whole triangle.
+#[derive(Clone, Copy)]
+pub(crate) struct OneArray<'a> {
+    pub pressures: &'a [f64],
+    pub per_resolution: f64,
+}
+
+impl Response for OneArray<'_> {
+    #[inline(always)]
+    fn pressure(&self, _: &[f64; 3], z: f64) -> (f64, f64) {
+        let (p, slope) = interpolate(self.pressures, z * self.per_resolution);
+        (p, slope * self.per_resolution)
+    }
+}
+
+/// Soil with an array per corner, averaged (P2 §2.3.2.3).
+#[derive(Clone, Copy)]
+pub(crate) struct ThreeArrays<'a> {
+    pub pressures: [&'a [f64]; 3],
+    pub per_resolution: f64,
+}
+
+impl Response for ThreeArrays<'_> {
+    #[inline(always)]
+    fn pressure(&self, _: &[f64; 3], z: f64) -> (f64, f64) {
+        let t = z * self.per_resolution;
+        let [a, b, c] = self.pressures.map(|array| interpolate(array, t));
+        ((a.0 + b.0 + c.0) / 3.0, (a.1 + b.1 + c.1) / 3.0 * self.per_resolution)
+    }
+}
+
+/// Soil that was loaded before and springs along a straight line up to its virgin curve.
+#[derive(Clone, Copy)]
+pub(crate) struct Reloaded<R> {
+    pub virgin: R,
+    pub stiffness: f64,
+    pub residual: [f64; 3],
+}
+
+impl<R: Response> Response for Reloaded<R> {
+    #[inline(always)]
+    fn pressure(&self, b: &[f64; 3], z: f64) -> (f64, f64) {
+        let residual = b[0] * self.residual[0] + b[1] * self.residual[1] + b[2] * self.residual[2];
+        let spring = self.stiffness * (z - residual).max(0.0);
+        let virgin = self.virgin.pressure(b, z);
+        if spring < virgin.0 { (spring, self.stiffness) } else { virgin }
+    }
+}
+
+/// Ground of constant stiffness: rock and stump.
+#[derive(Clone, Copy)]
+pub(crate) struct Stiff(pub f64);
+
+impl Response for Stiff {
+    #[inline(always)]
+    fn pressure(&self, _: &[f64; 3], z: f64) -> (f64, f64) {
+        (self.0 * z.max(0.0), self.0)
+    }
+
+    #[inline(always)]
+    fn constant_slope(&self, z: &[f64; 3]) -> Option<f64> {
+        (z[0] >= 0.0 && z[1] >= 0.0 && z[2] >= 0.0).then_some(self.0)
+    }
+}
+
+/// Means over a triangle of pressure and what follows from it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PolygonLoad {
+    /// Mean pressure \[Pa\] over the triangle.
+    pub pressure: f64,
+    /// Mean of pressure × barycentric coordinate \[Pa\]: where the force acts.
+    pub moment: [f64; 3],
+    /// Mean of dp/dz \[Pa/m\].
+    pub stiffness: f64,
+    /// Mean of pressure × barycentric coordinate as if all corners were loaded \[Pa\].
+    pub unshared: [f64; 3],
+}
+
+/// Integrates over one triangle with corner sinkages `z` \[m\] and shares of load of its corners (0…1).
+#[inline(always)]
+pub(crate) fn integrate(
+    sub: &SubTriangles,
+    ground: impl Response,
+    z: &[f64; 3],
+    share: &[f64; 3],
+    partial: PartialLoad,
+) -> PolygonLoad {
+    let is_full = *share == [1.0; 3];
+    if is_full && let Some(k) = ground.constant_slope(z) {
+        let moment = sub.second_moments.map(|m| k * (m[0] * z[0] + m[1] * z[1] + m[2] * z[2]));
+        let pressure = k * (z[0] + z[1] + z[2]) / 3.0;
+        return PolygonLoad { pressure, moment, stiffness: k, unshared: moment };
+    }
+    let mut load = PolygonLoad::default();
+    for b in &sub.centres {
+        let z_l = b[0] * z[0] + b[1] * z[1] + b[2] * z[2];
+        let (p, slope) = ground.pressure(b, z_l);
+        let multiplier = if is_full {
+            1.0
+        } else {
+            // P2 Eq. (6)
+            let l_c = b[0] * share[0] + b[1] * share[1] + b[2] * share[2];
+            for k in 0..3 {
+                load.unshared[k] += p * b[k];
+            }
+            match partial {
+                PartialLoad::Step => f64::from(u8::from(l_c >= 0.5 - 1e-12)),
+                PartialLoad::Proportional => l_c,
+            }
+        };
+        let f = p * multiplier;
+        load.pressure += f;
+        load.stiffness += slope * multiplier;
+        for k in 0..3 {
+            load.moment[k] += f * b[k];
+        }
+    }
+    let n = 1.0 / sub.centres.len() as f64;
+    load.pressure *= n;
+    load.stiffness *= n;
+    for k in 0..3 {
+        load.moment[k] *= n;
+        load.unshared[k] = if is_full { load.moment[k] } else { load.unshared[k] * n };
+    }
+    load
+}
+
+/// Force \[N\] over a triangle of horizontal area `area` \[m²\] with corner sinkages `z` \[m\]; corners carry load where `is_loaded`.
+///
+/// P2 Eqs. (5), (6): the vertical part of the polygon's force. The pressure array is read as in a run.
+pub fn polygon_force(
+    sub: &SubTriangles,
+    array: &crate::pressure::PressureArray,
+    z: [f64; 3],
+    is_loaded: [bool; 3],
+    area: f64,
+) -> f64 {
+    let ground = OneArray { pressures: array.pressures(), per_resolution: 1.0 / array.resolution() };
+    let share = is_loaded.map(|l| f64::from(u8::from(l)));
+    area * integrate(sub, ground, &z, &share, PartialLoad::Step).pressure
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sub_triangles_tile_the_triangle() {
+        for r in 1..9 {
+            let sub = SubTriangles::new(r);
+            assert_eq!(sub.centres().len(), r * r);
+            let sum = sub.centres().iter().fold([0.0; 3], |s, b| [s[0] + b[0], s[1] + b[1], s[2] + b[2]]);
+            for s in sum {
+                assert!((s / (r * r) as f64 - 1.0 / 3.0).abs() < 1e-12);
+            }
+            assert!(sub.centres().iter().all(|b| b.iter().all(|&x| x > 0.0)));
+        }
+    }
+
+    #[test]
+    fn the_step_takes_a_quarter_or_three_quarters_for_even_resolutions_only() {
+        let covered = |r: usize, share: [f64; 3]| {
+            let sub = SubTriangles::new(r);
+            integrate(&sub, Stiff(1.0), &[1.0; 3], &share, PartialLoad::Step).pressure
+        };
+        for r in [2, 4, 6, 12] {
+            assert!((covered(r, [1.0, 0.0, 0.0]) - 0.25).abs() < 1e-12);
+            assert!((covered(r, [0.0, 1.0, 1.0]) - 0.75).abs() < 1e-12);
+        }
+        assert!((covered(3, [1.0, 0.0, 0.0]) - 0.25).abs() > 0.02);
+    }
+
+    #[test]
+    fn the_short_cut_for_constant_stiffness_equals_the_sum() {
+        #[derive(Clone, Copy)]
+        struct Long(f64);
+        impl Response for Long {
+            fn pressure(&self, _: &[f64; 3], z: f64) -> (f64, f64) {
+                (self.0 * z, self.0)
+            }
+        }
+        let (sub, z) = (SubTriangles::new(4), [0.01, 0.05, 0.02]);
+        let short = integrate(&sub, Stiff(1e6), &z, &[1.0; 3], PartialLoad::Step);
+        let long = integrate(&sub, Long(1e6), &z, &[1.0; 3], PartialLoad::Step);
+        assert!((short.pressure - long.pressure).abs() < 1e-9 * long.pressure);
+        for k in 0..3 {
+            assert!((short.moment[k] - long.moment[k]).abs() < 1e-9 * long.pressure);
+        }
+    }
+}
