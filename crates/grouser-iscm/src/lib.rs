@@ -1,6 +1,8 @@
 //! Integration soil contact model (ISCM): wheeled and tracked vehicles on soft ground.
 pub mod contact;
+pub mod gear;
 pub mod imprint;
+pub mod mechanism;
 pub mod polygon;
 pub mod pressure;
 pub mod terrain;

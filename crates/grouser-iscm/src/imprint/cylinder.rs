@@ -2,7 +2,7 @@
 
 use grouser_geometry::Vec3;
 
-use super::{Imprint, overlap};
+use super::{Imprint, cell_width, overlap};
 use crate::polygon::PartialLoad;
 
 impl Imprint {
@@ -17,6 +17,7 @@ impl Imprint {
         if flat < 1e-6 {
             return;
         }
+        let cell = self.spacing * cell_width(&a);
         for j in js {
             for i in is.clone() {
                 let [x, y] = self.position(i, j);
@@ -32,7 +33,7 @@ impl Imprint {
                 let s = e + a.z * zeta;
                 let coverage = match self.partial {
                     PartialLoad::Step => f64::from(u8::from(s.abs() <= half + 1e-9)),
-                    PartialLoad::Proportional => overlap(s, self.spacing / flat.sqrt(), -half, half),
+                    PartialLoad::Proportional => overlap(s, cell, -half, half),
                 };
                 let height = centre.z + zeta;
                 if coverage == 0.0 || height > self.ceiling {

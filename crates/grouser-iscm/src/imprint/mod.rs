@@ -161,6 +161,15 @@ impl Imprint {
     }
 }
 
+/// Width of a cell of the grid along a horizontal direction, per spacing: 1 along the axes, √2 across.
+///
+/// With it, rows of points cover a strip by its exact width along the axes and across, and nearly so in between.
+#[inline(always)]
+fn cell_width(direction: &grouser_geometry::Vec3) -> f64 {
+    let horizontal = direction.x.hypot(direction.y);
+    (direction.x.abs() + direction.y.abs()) / (horizontal * horizontal).max(1e-12)
+}
+
 /// Share of the interval of `width` around `u` that lies within `low` to `high`.
 #[inline(always)]
 fn overlap(u: f64, width: f64, low: f64, high: f64) -> f64 {

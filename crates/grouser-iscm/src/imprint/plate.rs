@@ -3,7 +3,7 @@
 use grouser_geometry::{Pose, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::{Imprint, overlap};
+use super::{Imprint, cell_width, overlap};
 use crate::polygon::PartialLoad;
 
 /// A rectangle of a shoe that faces the ground.
@@ -38,10 +38,10 @@ impl Imprint {
             return;
         }
         let (horizontal_x, horizontal_y) = ((1.0 - e_x.z * e_x.z).sqrt(), (1.0 - e_y.z * e_y.z).sqrt());
-        let (cell_x, cell_y) = (self.spacing / horizontal_x, self.spacing / horizontal_y);
+        let (cell_x, cell_y) = (self.spacing * cell_width(&e_x), self.spacing * cell_width(&e_y));
         let margin = match self.partial {
             PartialLoad::Step => 0.0,
-            PartialLoad::Proportional => self.spacing / 2.0,
+            PartialLoad::Proportional => self.spacing * std::f64::consts::FRAC_1_SQRT_2,
         };
         let (mut min, mut max) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for u in plate.along {
