@@ -1,7 +1,9 @@
 //! Integration soil contact model (ISCM): wheeled and tracked vehicles on soft ground.
 pub mod contact;
+pub mod equilibrium;
 pub mod gear;
 pub mod imprint;
+pub mod machine;
 pub mod mechanism;
 pub mod polygon;
 pub mod pressure;
