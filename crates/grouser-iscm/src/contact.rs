@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Matrix6, Vector6};
 
 use crate::imprint::Imprint;
 use crate::polygon::{
-    OneArray, PartialLoad, PolygonLoad, Reloaded, Stiff, SubTriangles, ThreeArrays, integrate,
+    Corners, OneArray, PartialLoad, PolygonLoad, Reloaded, Stiff, SubTriangles, ThreeArrays, integrate,
 };
 use crate::terrain::{Terrain, Unloading};
 
@@ -86,10 +86,18 @@ struct Node {
     z: f64,
     /// Height of the ground then \[m\].
     height: f64,
-    /// Share of load.
+    /// Share of the cell that the gear covers.
     share: f64,
-    /// Change of the share per metre of sinkage \[1/m\].
-    share_slope: f64,
+    /// Depth of the gear below the present ground \[m\].
+    depth: f64,
+}
+
+impl Node {
+    /// Whether the gear does not press here.
+    #[inline(always)]
+    fn is_free(&self) -> bool {
+        self.share == 0.0 || self.depth <= 0.0
+    }
 }
 
 impl FootImprint {
@@ -126,12 +134,6 @@ impl FootImprint {
         let turn: Matrix3<f64> = motion.rotation.to_rotation_matrix().matrix() - Matrix3::identity();
         let shift = motion.translation.vector;
         let is_moved = turn != Matrix3::zeros() || shift != Vec3::zeros();
-        let contact = match terrain.unloading() {
-            Unloading::Plastic { contact_distance } if partial == PartialLoad::Proportional => {
-                contact_distance
-            }
-            _ => 0.0,
-        };
         let n_grid = terrain.grid().n_x();
         let original = terrain.grid().heights();
         let mut nodes = vec![Node::default(); imprint.nodes.len()];
@@ -144,7 +146,7 @@ impl FootImprint {
                 let z_0 = original[node];
                 let ground = terrain.height(node);
                 if !gear.is_known {
-                    nodes[n] = Node { z: z_0 - ground, height: ground, share: 0.0, share_slope: 0.0 };
+                    nodes[n] = Node { z: z_0 - ground, height: ground, share: 0.0, depth: 0.0 };
                     continue;
                 }
                 let mut h = gear.height;
@@ -153,18 +155,18 @@ impl FootImprint {
                     let d = turn * Vec3::new(x, y, h) + shift;
                     h += d.z - gear.slope[0] * d.x - gear.slope[1] * d.y;
                 }
-                let height = h.min(ground);
-                let (mut share, mut share_slope) = (0.0, 0.0);
-                if h < ground && gear.coverage > 0.0 {
-                    let free = self.uncovered(layer, imprint.i_0 + i, imprint.j_0 + j) * gear.coverage;
-                    share = if partial == PartialLoad::Step { free.round() } else { free };
-                    if contact > 0.0 && ground - h < contact {
-                        share_slope = share / contact;
-                        share *= (ground - h) / contact;
-                    }
-                    is_any |= share > 0.0;
+                let is_loaded = h < ground && gear.coverage > 0.0;
+                let mut share = 0.0;
+                if gear.coverage > 0.0 {
+                    share = self.uncovered(layer, imprint.i_0 + i, imprint.j_0 + j) * gear.coverage;
                 }
-                nodes[n] = Node { z: z_0 - height, height, share, share_slope };
+                if partial == PartialLoad::Step {
+                    // As printed: a point is loaded and follows the gear, or is not and stays.
+                    share = if is_loaded { share.round() } else { 0.0 };
+                    h = h.min(ground);
+                }
+                is_any |= is_loaded && share > 0.0;
+                nodes[n] = Node { z: z_0 - h, height: h, share, depth: ground - h };
             }
         }
         (nodes, is_any)
@@ -199,7 +201,7 @@ impl FootImprint {
             for i in 0..n_x.saturating_sub(1) {
                 let n = j * n_x + i;
                 let cell = [n, n + 1, n + n_x, n + n_x + 1];
-                if cell.iter().all(|&c| nodes[c].share == 0.0) {
+                if cell.iter().all(|&c| nodes[c].is_free()) {
                     continue;
                 }
                 // Diagonals alternate so that no direction is preferred.
@@ -211,16 +213,14 @@ impl FootImprint {
                 };
                 for corners in triangles {
                     let at = corners.map(|(a, b)| nodes[n + b * n_x + a]);
-                    if at.iter().all(|c| c.share == 0.0) {
+                    if at.iter().all(Node::is_free) {
                         continue;
                     }
                     let on_grid = corners.map(|(a, b)| (j_g + b) * n_grid + i_g + a);
                     let answer = answer(terrain, &on_grid, &at, integration);
                     self.collect(layer, (i, j), &corners, &at, answer, load, listen);
-                    let soil = at
-                        .iter()
-                        .zip(&on_grid)
-                        .filter(|(c, node)| c.share > 0.0 && !terrain.is_fixed(**node));
+                    let soil =
+                        at.iter().zip(&on_grid).filter(|(c, node)| !c.is_free() && !terrain.is_fixed(**node));
                     load.deepest = soil.map(|(c, _)| c.z).fold(load.deepest, f64::max);
                 }
             }
@@ -257,8 +257,7 @@ impl FootImprint {
         let position = points[0] * weights[0] + points[1] * weights[1] + points[2] * weights[2];
         let arm = position - self.reference;
         load.wrench += Wrench { force, moment: arm.cross(&force) };
-        let growing: f64 = (0..3).map(|k| at[k].share_slope * answer.unshared[k]).sum();
-        let stiffness = area * (answer.stiffness + growing);
+        let stiffness = area * answer.stiffness;
         let turned = arm.cross(&normal);
         let w = Vector6::new(normal.x, normal.y, normal.z, turned.x, turned.y, turned.z);
         load.stiffness.ger(stiffness, &w, &w, 1.0);
@@ -282,31 +281,33 @@ impl FootImprint {
 /// F3, F4: the ground's answer under one polygon.
 #[inline(always)]
 fn answer(terrain: &Terrain, on_grid: &[usize; 3], at: &[Node; 3], integration: &Integration) -> PolygonLoad {
-    let (z, share) = (at.map(|c| c.z), at.map(|c| c.share));
+    let corners = Corners { z: at.map(|c| c.z), share: at.map(|c| c.share), depth: at.map(|c| c.depth) };
     let (sub, partial) = (&integration.sub_triangles, integration.partial);
     if on_grid.iter().all(|&node| terrain.is_fixed(node)) {
-        return integrate(sub, Stiff(Terrain::FIXED_STIFFNESS), &z, &share, partial); // P2 Eq. (4)
+        return integrate(sub, Stiff(Terrain::FIXED_STIFFNESS), &corners, partial, 0.0); // P2 Eq. (4)
     }
     let field = terrain.field();
     let per_resolution = 1.0 / field.resolution();
-    let elastic = match terrain.unloading() {
-        Unloading::Plastic { .. } => None,
-        Unloading::Elastic { stiffness } => Some((stiffness, on_grid.map(|node| terrain.sinkage()[node]))),
+    let (elastic, contact) = match terrain.unloading() {
+        Unloading::Plastic { contact_distance } => (None, contact_distance),
+        Unloading::Elastic { stiffness } => {
+            (Some((stiffness, on_grid.map(|node| terrain.sinkage()[node]))), 0.0)
+        }
     };
     if field.is_per_node() {
         let virgin = ThreeArrays { pressures: on_grid.map(|node| field.of_node(node)), per_resolution };
         match elastic {
-            None => integrate(sub, virgin, &z, &share, partial),
+            None => integrate(sub, virgin, &corners, partial, contact),
             Some((stiffness, residual)) => {
-                integrate(sub, Reloaded { virgin, stiffness, residual }, &z, &share, partial)
+                integrate(sub, Reloaded { virgin, stiffness, residual }, &corners, partial, 0.0)
             }
         }
     } else {
         let virgin = OneArray { pressures: field.of_node(0), per_resolution };
         match elastic {
-            None => integrate(sub, virgin, &z, &share, partial),
+            None => integrate(sub, virgin, &corners, partial, contact),
             Some((stiffness, residual)) => {
-                integrate(sub, Reloaded { virgin, stiffness, residual }, &z, &share, partial)
+                integrate(sub, Reloaded { virgin, stiffness, residual }, &corners, partial, 0.0)
             }
         }
     }

@@ -136,6 +136,17 @@ impl Response for Stiff {
     }
 }
 
+/// Corners of a triangle under running gear.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corners {
+    /// Sinkage if the ground followed the gear \[m\].
+    pub z: [f64; 3],
+    /// Share of the corner's cell that the gear covers, or 0 and 1 for [`PartialLoad::Step`].
+    pub share: [f64; 3],
+    /// Depth of the gear below the present ground \[m\]; negative where it is above.
+    pub depth: [f64; 3],
+}
+
 /// Means over a triangle of pressure and what follows from it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PolygonLoad {
@@ -143,47 +154,56 @@ pub(crate) struct PolygonLoad {
     pub pressure: f64,
     /// Mean of pressure × barycentric coordinate \[Pa\]: where the force acts.
     pub moment: [f64; 3],
-    /// Mean of dp/dz \[Pa/m\].
+    /// Mean of the pressure's derivative with sinkage \[Pa/m\].
     pub stiffness: f64,
-    /// Mean of pressure × barycentric coordinate as if all corners were loaded \[Pa\].
-    pub unshared: [f64; 3],
 }
 
-/// Integrates over one triangle with corner sinkages `z` \[m\] and shares of load of its corners (0…1).
+#[inline(always)]
+fn blend(b: &[f64; 3], values: &[f64; 3]) -> f64 {
+    b[0] * values[0] + b[1] * values[1] + b[2] * values[2]
+}
+
+/// Integrates over one triangle; contact builds up over `contact` \[m\] of depth.
 #[inline(always)]
 pub(crate) fn integrate(
     sub: &SubTriangles,
     ground: impl Response,
-    z: &[f64; 3],
-    share: &[f64; 3],
+    corners: &Corners,
     partial: PartialLoad,
+    contact: f64,
 ) -> PolygonLoad {
-    let is_full = *share == [1.0; 3];
+    let Corners { z, share, depth } = corners;
+    let is_full = *share == [1.0; 3] && (partial == PartialLoad::Step || depth.iter().all(|&g| g >= contact));
     if is_full && let Some(k) = ground.constant_slope(z) {
         let moment = sub.second_moments.map(|m| k * (m[0] * z[0] + m[1] * z[1] + m[2] * z[2]));
         let pressure = k * (z[0] + z[1] + z[2]) / 3.0;
-        return PolygonLoad { pressure, moment, stiffness: k, unshared: moment };
+        return PolygonLoad { pressure, moment, stiffness: k };
     }
     let mut load = PolygonLoad::default();
     for b in &sub.centres {
-        let z_l = b[0] * z[0] + b[1] * z[1] + b[2] * z[2];
-        let (p, slope) = ground.pressure(b, z_l);
-        let multiplier = if is_full {
-            1.0
+        let (multiplier, growth) = if is_full {
+            (1.0, 0.0)
         } else {
-            // P2 Eq. (6)
-            let l_c = b[0] * share[0] + b[1] * share[1] + b[2] * share[2];
-            for k in 0..3 {
-                load.unshared[k] += p * b[k];
-            }
+            let l_c = blend(b, share); // P2 Eq. (6)
             match partial {
-                PartialLoad::Step => f64::from(u8::from(l_c >= 0.5 - 1e-12)),
-                PartialLoad::Proportional => l_c,
+                PartialLoad::Step if l_c >= 0.5 - 1e-12 => (1.0, 0.0),
+                PartialLoad::Step => continue,
+                PartialLoad::Proportional => {
+                    let g = blend(b, depth);
+                    if g <= 0.0 {
+                        continue;
+                    } else if g < contact {
+                        (l_c * g / contact, l_c / contact)
+                    } else {
+                        (l_c, 0.0)
+                    }
+                }
             }
         };
+        let (p, slope) = ground.pressure(b, blend(b, z));
         let f = p * multiplier;
         load.pressure += f;
-        load.stiffness += slope * multiplier;
+        load.stiffness += slope * multiplier + p * growth;
         for k in 0..3 {
             load.moment[k] += f * b[k];
         }
@@ -191,10 +211,7 @@ pub(crate) fn integrate(
     let n = 1.0 / sub.centres.len() as f64;
     load.pressure *= n;
     load.stiffness *= n;
-    for k in 0..3 {
-        load.moment[k] *= n;
-        load.unshared[k] = if is_full { load.moment[k] } else { load.unshared[k] * n };
-    }
+    load.moment = load.moment.map(|m| m * n);
     load
 }
 
@@ -210,7 +227,8 @@ pub fn polygon_force(
 ) -> f64 {
     let ground = OneArray { pressures: array.pressures(), per_resolution: 1.0 / array.resolution() };
     let share = is_loaded.map(|l| f64::from(u8::from(l)));
-    area * integrate(sub, ground, &z, &share, PartialLoad::Step).pressure
+    let corners = Corners { z, share, depth: z };
+    area * integrate(sub, ground, &corners, PartialLoad::Step, 0.0).pressure
 }
 
 #[cfg(test)]
@@ -234,7 +252,8 @@ mod tests {
     fn the_step_takes_a_quarter_or_three_quarters_for_even_resolutions_only() {
         let covered = |r: usize, share: [f64; 3]| {
             let sub = SubTriangles::new(r);
-            integrate(&sub, Stiff(1.0), &[1.0; 3], &share, PartialLoad::Step).pressure
+            let corners = Corners { z: [1.0; 3], share, depth: [1.0; 3] };
+            integrate(&sub, Stiff(1.0), &corners, PartialLoad::Step, 0.0).pressure
         };
         for r in [2, 4, 6, 12] {
             assert!((covered(r, [1.0, 0.0, 0.0]) - 0.25).abs() < 1e-12);
@@ -253,8 +272,9 @@ mod tests {
             }
         }
         let (sub, z) = (SubTriangles::new(4), [0.01, 0.05, 0.02]);
-        let short = integrate(&sub, Stiff(1e6), &z, &[1.0; 3], PartialLoad::Step);
-        let long = integrate(&sub, Long(1e6), &z, &[1.0; 3], PartialLoad::Step);
+        let corners = Corners { z, share: [1.0; 3], depth: z };
+        let short = integrate(&sub, Stiff(1e6), &corners, PartialLoad::Step, 0.0);
+        let long = integrate(&sub, Long(1e6), &corners, PartialLoad::Step, 0.0);
         assert!((short.pressure - long.pressure).abs() < 1e-9 * long.pressure);
         for k in 0..3 {
             assert!((short.moment[k] - long.moment[k]).abs() < 1e-9 * long.pressure);
