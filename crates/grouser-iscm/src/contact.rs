@@ -122,6 +122,23 @@ impl FootImprint {
         load
     }
 
+    /// Leaves the footprint: points inside the outline of the gear go down to its underside.
+    pub fn stamp(&self, terrain: &mut Terrain, motion: &Pose) {
+        for layer in 0..self.layers.len() {
+            let (nodes, _) = self.nodes(layer, terrain, motion, PartialLoad::Proportional);
+            let imprint = &self.layers[layer];
+            let n_grid = terrain.grid().n_x();
+            for j in 0..imprint.n_y {
+                for i in 0..imprint.n_x {
+                    let n = j * imprint.n_x + i;
+                    if imprint.nodes[n].coverage >= 0.5 && nodes[n].depth > 0.0 {
+                        terrain.stamp((imprint.j_0 + j) * n_grid + imprint.i_0 + i, nodes[n].height);
+                    }
+                }
+            }
+        }
+    }
+
     /// F1, F2: sinkage, height and share of every node of a layer.
     fn nodes(
         &self,

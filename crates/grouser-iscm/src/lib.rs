@@ -7,4 +7,8 @@ pub mod machine;
 pub mod mechanism;
 pub mod polygon;
 pub mod pressure;
+pub mod rolling_resistance;
+pub mod route;
+pub mod run;
+pub mod rut;
 pub mod terrain;

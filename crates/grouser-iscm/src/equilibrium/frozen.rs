@@ -4,7 +4,7 @@ use grouser_geometry::Pose;
 use nalgebra::{DMatrix, Matrix6xX, Vector6};
 use rayon::prelude::*;
 
-use super::{NoEquilibrium, motion};
+use super::{NoEquilibrium, SearchSettings, motion, newton};
 use crate::contact::{FootImprint, FootLoad, Integration, LoadedPolygon};
 use crate::machine::Machine;
 use crate::mechanism::Configuration;
@@ -80,6 +80,39 @@ impl Frozen {
                 self.foot_load(foot, machine, terrain, &self.poses[body], |polygon| listen(foot, polygon))
             })
             .collect()
+    }
+
+    /// E2 alone: the balance without drawing again.
+    pub fn settle(&self, machine: &Machine, terrain: &Terrain, settings: &SearchSettings) -> Configuration {
+        let (q, _, _) = newton::solve(self, machine, terrain, settings.position_tolerance);
+        self.moved(machine, &q)
+    }
+
+    /// Lifts the machine from `at` until the ground carries less than `weight` \[N\] (P2 §2.4).
+    pub fn lift_below(
+        &self,
+        machine: &Machine,
+        terrain: &Terrain,
+        at: Configuration,
+        weight: f64,
+    ) -> Configuration {
+        let mut at = at;
+        for _ in 0..40 {
+            let balance = self.balance(machine, terrain, &machine.mechanism.dofs(&at));
+            let surplus = balance.forces[0];
+            if surplus < 0.0 {
+                break;
+            }
+            // A thousandth of a micrometre more than the stiffness asks for.
+            at.height += 1e-9 + (surplus + 1e-9 * weight) / balance.stiffness[(0, 0)].max(1e-3 * weight);
+        }
+        at
+    }
+
+    /// Motion of a foot's body from where its imprint was drawn to a configuration nearby.
+    pub fn motion_of(&self, foot: usize, machine: &Machine, to: &Configuration) -> Pose {
+        let body = machine.feet[foot].body;
+        motion(&self.poses[body], &machine.mechanism.poses(to)[body])
     }
 
     /// Names a sinkage beyond the data and forces that are not numbers.
