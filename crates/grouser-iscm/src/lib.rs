@@ -12,3 +12,4 @@ pub mod route;
 pub mod run;
 pub mod rut;
 pub mod terrain;
+pub mod vehicle;
