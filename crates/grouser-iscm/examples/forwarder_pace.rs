@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ];
     let grid = HeightGrid::covering([-2.0, -2.5], [30.0, 5.0], 0.04, |x, y| HeightShape::sum(&shapes, x, y))?;
     let smooth = Box::new(PressureLaw::Linear(Linear { stiffness: 1.0e6 }));
-    let law = PressureLaw::Noisy(Noisy { law: smooth, amplitude: 0.15, interval: 0.01, seed: 1 });
+    let law = PressureLaw::Noisy(Noisy { law: smooth, amplitude: 0.05, interval: 0.05, seed: 1 });
     let terrain = Terrain::new(grid, PressureField::uniform(PressureArray::new(&law, 0.005, 0.6)?))?;
     let radius = 0.67;
     let axle = |along, mass, belts| Axle {
@@ -70,8 +70,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = std::time::Instant::now();
     let mut state = RunState::start(&machine, terrain, &settings)?;
     let setup = start.elapsed();
+    println!("setup {setup:.3?}");
     let (start, mut n, mut evaluations, mut coefficient) = (std::time::Instant::now(), 0, 0, 0.0);
-    while state.can_go_on(&settings) && n < 100 {
+    while state.can_go_on(&settings) && n < 3 {
         let result = state.step(&machine, &settings)?;
         n += 1;
         evaluations += result.n_evaluations;

@@ -92,12 +92,10 @@ struct Node {
     depth: f64,
 }
 
-impl Node {
-    /// Whether the gear does not press here.
-    #[inline(always)]
-    fn is_free(&self) -> bool {
-        self.share == 0.0 || self.depth <= 0.0
-    }
+/// Whether the gear presses nowhere between these corners: none is covered, or all lie below the gear.
+#[inline(always)]
+fn is_free(corners: &[Node]) -> bool {
+    corners.iter().all(|c| c.share == 0.0) || corners.iter().all(|c| c.depth <= 0.0)
 }
 
 impl FootImprint {
@@ -182,7 +180,7 @@ impl FootImprint {
                     share = if is_loaded { share.round() } else { 0.0 };
                     h = h.min(ground);
                 }
-                is_any |= is_loaded && share > 0.0;
+                is_any |= h < ground;
                 nodes[n] = Node { z: z_0 - h, height: h, share, depth: ground - h };
             }
         }
@@ -218,7 +216,7 @@ impl FootImprint {
             for i in 0..n_x.saturating_sub(1) {
                 let n = j * n_x + i;
                 let cell = [n, n + 1, n + n_x, n + n_x + 1];
-                if cell.iter().all(|&c| nodes[c].is_free()) {
+                if is_free(&cell.map(|c| nodes[c])) {
                     continue;
                 }
                 // Diagonals alternate so that no direction is preferred.
@@ -230,14 +228,14 @@ impl FootImprint {
                 };
                 for corners in triangles {
                     let at = corners.map(|(a, b)| nodes[n + b * n_x + a]);
-                    if at.iter().all(Node::is_free) {
+                    if is_free(&at) {
                         continue;
                     }
                     let on_grid = corners.map(|(a, b)| (j_g + b) * n_grid + i_g + a);
                     let answer = answer(terrain, &on_grid, &at, integration);
                     self.collect(layer, (i, j), &corners, &at, answer, load, listen);
                     let soil =
-                        at.iter().zip(&on_grid).filter(|(c, node)| !c.is_free() && !terrain.is_fixed(**node));
+                        at.iter().zip(&on_grid).filter(|(c, node)| c.share > 0.0 && c.depth > 0.0 && !terrain.is_fixed(**node));
                     load.deepest = soil.map(|(c, _)| c.z).fold(load.deepest, f64::max);
                 }
             }
@@ -274,7 +272,7 @@ impl FootImprint {
         let position = points[0] * weights[0] + points[1] * weights[1] + points[2] * weights[2];
         let arm = position - self.reference;
         load.wrench += Wrench { force, moment: arm.cross(&force) };
-        let stiffness = area * answer.stiffness;
+        let stiffness = area * answer.stiffness.max(0.0);
         let turned = arm.cross(&normal);
         let w = Vector6::new(normal.x, normal.y, normal.z, turned.x, turned.y, turned.z);
         load.stiffness.ger(stiffness, &w, &w, 1.0);
