@@ -234,8 +234,10 @@ impl FootImprint {
                     let on_grid = corners.map(|(a, b)| (j_g + b) * n_grid + i_g + a);
                     let answer = answer(terrain, &on_grid, &at, integration);
                     self.collect(layer, (i, j), &corners, &at, answer, load, listen);
-                    let soil =
-                        at.iter().zip(&on_grid).filter(|(c, node)| c.share > 0.0 && c.depth > 0.0 && !terrain.is_fixed(**node));
+                    let soil = at
+                        .iter()
+                        .zip(&on_grid)
+                        .filter(|(c, node)| c.share > 0.0 && c.depth > 0.0 && !terrain.is_fixed(**node));
                     load.deepest = soil.map(|(c, _)| c.z).fold(load.deepest, f64::max);
                 }
             }

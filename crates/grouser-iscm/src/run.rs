@@ -160,14 +160,13 @@ impl RunState {
         settings: &RunSettings,
         distance: f64,
     ) -> Result<(), RunError> {
-        let loose = SearchSettings { position_tolerance: 1e-4, max_drawings: 1, ..settings.search };
         let mut at = self.configuration.clone();
         (at.position, at.heading) = settings.route.at(distance);
         steer(machine, &settings.route, distance, &mut at);
         let failed = |reason| RunError::NoEquilibrium { distance, reason };
         let frozen = Frozen::new(machine, &self.terrain, &at, distance, settings.search.integration())
             .map_err(failed)?;
-        let settled = frozen.settle(machine, &self.terrain, &loose);
+        let settled = frozen.settle(machine, &self.terrain, 1e-4);
         let weight = machine.mechanism.mass() * GRAVITY;
         let lifted = frozen.lift_below(machine, &self.terrain, settled, weight);
         for (foot, imprint) in frozen.imprints.iter().enumerate() {

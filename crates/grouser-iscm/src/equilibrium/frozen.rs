@@ -4,7 +4,7 @@ use grouser_geometry::Pose;
 use nalgebra::{DMatrix, Matrix6xX, Vector6};
 use rayon::prelude::*;
 
-use super::{NoEquilibrium, SearchSettings, motion, newton};
+use super::{NoEquilibrium, motion, newton};
 use crate::contact::{FootImprint, FootLoad, Integration, LoadedPolygon};
 use crate::machine::Machine;
 use crate::mechanism::Configuration;
@@ -82,9 +82,9 @@ impl Frozen {
             .collect()
     }
 
-    /// E2 alone: the balance without drawing again.
-    pub fn settle(&self, machine: &Machine, terrain: &Terrain, settings: &SearchSettings) -> Configuration {
-        let (q, _, _) = newton::solve(self, machine, terrain, settings.position_tolerance);
+    /// E2 alone and in a few steps: near the balance, without drawing again.
+    pub fn settle(&self, machine: &Machine, terrain: &Terrain, tolerance: f64) -> Configuration {
+        let (q, _, _) = newton::solve(self, machine, terrain, tolerance, 3);
         self.moved(machine, &q)
     }
 

@@ -181,7 +181,7 @@ pub fn equilibrium(
         let frozen = Frozen::new(machine, terrain, &at, travel, integration.clone())?; // E1
         let tolerance = settings.position_tolerance;
         let (q, stops, n) = match settings.solver {
-            Solver::Fast => newton::solve(&frozen, machine, terrain, 0.1 * tolerance), // E2
+            Solver::Fast => newton::solve(&frozen, machine, terrain, 0.1 * tolerance, 60), // E2
             Solver::Nested => nested::solve(&frozen, machine, terrain, 0.1 * tolerance),
         };
         n_evaluations += n;

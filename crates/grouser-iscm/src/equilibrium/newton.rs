@@ -17,6 +17,7 @@ pub(super) fn solve(
     machine: &Machine,
     terrain: &Terrain,
     tolerance: f64,
+    max_iterations: usize,
 ) -> (Vec<f64>, Vec<usize>, usize) {
     let mechanism = &machine.mechanism;
     let n = mechanism.n_dofs();
@@ -25,7 +26,7 @@ pub(super) fn solve(
     let mut n_evaluations = 1;
     let mut here = frozen.balance(machine, terrain, &q);
     let mut stops = Vec::new();
-    for _ in 0..60 {
+    for _ in 0..max_iterations {
         stops = pressed_stops(machine, &q, &here.forces);
         let mut d = direction(&here, &stops, mechanism.mass() * GRAVITY);
         // Stay near the drawing and within the stops.
