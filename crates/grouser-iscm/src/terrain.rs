@@ -32,7 +32,7 @@ pub enum Unloading {
 
 impl Default for Unloading {
     fn default() -> Self {
-        Self::Plastic { contact_distance: 1e-4 }
+        Self::Plastic { contact_distance: 1e-3 }
     }
 }
 

@@ -14,10 +14,17 @@ pub(super) fn solve(
     tolerance: f64,
 ) -> (Vec<f64>, Vec<usize>, usize) {
     let q = machine.mechanism.dofs(&frozen.at);
-    let search =
-        Search { frozen, machine, terrain, start: q.clone(), tolerance, n_evaluations: Cell::new(0) };
+    let search = Search {
+        order: order(machine),
+        frozen,
+        machine,
+        terrain,
+        start: q.clone(),
+        tolerance,
+        n_evaluations: Cell::new(0),
+    };
     let mut q = q;
-    let forces = search.settle(&mut q, 0);
+    let forces = search.settle(&mut q, &search.order);
     let stops = (3..q.len())
         .filter(|&k| {
             let [low, high] = machine.mechanism.limits(k);
@@ -27,7 +34,28 @@ pub(super) fn solve(
     (q, stops, search.n_evaluations.get())
 }
 
+/// One loop: a degree of freedom that others depend on, or last bodies of the chain that do not feel each other.
+enum Loop {
+    One(usize),
+    Leaves(Vec<usize>),
+}
+
+/// Height, pitch, roll and joints between components one within another; bogies, innermost, each for itself.
+fn order(machine: &Machine) -> Vec<Loop> {
+    let mechanism = &machine.mechanism;
+    let is_leaf = |dof: usize| {
+        mechanism.dof_body(dof).is_some_and(|body| {
+            (0..mechanism.n_dofs()).all(|other| {
+                other == dof || mechanism.dof_body(other).is_none_or(|b| !mechanism.hangs_on(b, body))
+            })
+        })
+    };
+    let (leaves, inner): (Vec<usize>, Vec<usize>) = (0..mechanism.n_dofs()).partition(|&dof| is_leaf(dof));
+    inner.into_iter().map(Loop::One).chain([Loop::Leaves(leaves)]).collect()
+}
+
 struct Search<'a> {
+    order: Vec<Loop>,
     frozen: &'a Frozen,
     machine: &'a Machine,
     terrain: &'a Terrain,
@@ -37,19 +65,43 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Brings the degrees of freedom from `level` on into balance and returns the forces there.
-    fn settle(&self, q: &mut Vec<f64>, level: usize) -> Vec<f64> {
-        if level == q.len() {
-            self.n_evaluations.set(self.n_evaluations.get() + 1);
-            return self.frozen.balance(self.machine, self.terrain, q).forces;
+    /// Brings the degrees of freedom of the remaining loops into balance and returns the forces there.
+    fn settle(&self, q: &mut Vec<f64>, loops: &[Loop]) -> Vec<f64> {
+        let depth = self.order.len() - loops.len();
+        match loops {
+            [] => self.forces(q),
+            [Loop::One(level), inner @ ..] => {
+                self.bracket(q, *level, depth, &|q: &mut Vec<f64>| self.settle(q, inner))
+            }
+            [Loop::Leaves(leaves), inner @ ..] => {
+                for &leaf in leaves {
+                    self.bracket(q, leaf, depth, &|q: &mut Vec<f64>| self.forces(q));
+                }
+                self.settle(q, inner)
+            }
         }
+    }
+
+    fn forces(&self, q: &[f64]) -> Vec<f64> {
+        self.n_evaluations.set(self.n_evaluations.get() + 1);
+        self.frozen.balance(self.machine, self.terrain, q).forces
+    }
+
+    /// A bracketed search in one degree of freedom; `inner` settles what depends on it.
+    fn bracket(
+        &self,
+        q: &mut Vec<f64>,
+        level: usize,
+        depth: usize,
+        inner: &dyn Fn(&mut Vec<f64>) -> Vec<f64>,
+    ) -> Vec<f64> {
         let reach = 0.1;
         let limits = self.machine.mechanism.limits(level);
         let low = (self.start[level] - reach).max(limits[0]);
         let high = (self.start[level] + reach).min(limits[1]);
         let at = |q: &mut Vec<f64>, value: f64| {
             q[level] = value;
-            self.settle(q, level + 1)
+            inner(q)
         };
         // Widen a bracket around the present value: the force falls as the coordinate grows.
         let (mut a, mut b) = (q[level], q[level]);
@@ -74,7 +126,7 @@ impl Search<'_> {
             let best = if f_b >= 0.0 { b } else { a };
             return at(q, best); // balanced already, or pressed against a stop or the edge of the drawing
         }
-        let tolerance = self.tolerance * 0.1_f64.powi((level as i32).min(3));
+        let tolerance = self.tolerance * 0.1_f64.powi((depth as i32).min(3));
         let (mut g_a, mut g_b) = (f_a, f_b);
         for _ in 0..80 {
             if b - a <= tolerance {

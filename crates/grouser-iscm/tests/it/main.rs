@@ -1,4 +1,4 @@
 //! Integration tests of the soil contact model.
 
-mod rut_depth;
-mod vehicles;
+mod restart;
+mod verification_cases;
