@@ -31,7 +31,12 @@
 //! ```
 
 mod bounding_box;
+pub mod esri_ascii;
 pub mod generate;
+pub mod grey_image;
+mod height_grid;
+mod height_shape;
+pub mod lathe;
 pub mod mesh_doctor;
 pub mod obj;
 mod polygon;
@@ -40,8 +45,11 @@ pub mod stl;
 mod surface;
 mod surface_topology;
 mod wrench;
+pub mod xyz_text;
 
 pub use bounding_box::BoundingBox;
+pub use height_grid::{GridError, HeightGrid};
+pub use height_shape::HeightShape;
 pub use nalgebra;
 pub use rigid_motion::RigidMotion;
 pub use surface::{SolidProperties, TriangleSurface};

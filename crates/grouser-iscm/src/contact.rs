@@ -1,0 +1,331 @@
+//! Force of the ground on running gear by integration over the polygons that it presses (P2 §2.3.2).
+//!
+//! Steps as in `docs/theory/iscm.md`, F1 to F5.
+
+use grouser_geometry::{Pose, Vec3};
+use nalgebra::{Matrix3, Matrix6, Vector6};
+
+use crate::imprint::Imprint;
+use crate::polygon::{
+    Corners, OneArray, PartialLoad, PolygonLoad, Reloaded, Stiff, SubTriangles, ThreeArrays, integrate,
+};
+use crate::terrain::{Terrain, Unloading};
+
+/// How forces are integrated.
+#[derive(Clone, Debug)]
+pub struct Integration {
+    /// Sub-triangles of a polygon.
+    pub sub_triangles: SubTriangles,
+    /// Treatment of partially loaded polygons.
+    pub partial: PartialLoad,
+}
+
+/// Force and moment about a reference point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// Force \[N\].
+    pub force: Vec3,
+    /// Moment about the reference point \[N·m\].
+    pub moment: Vec3,
+}
+
+impl std::ops::AddAssign for Wrench {
+    fn add_assign(&mut self, other: Self) {
+        self.force += other.force;
+        self.moment += other.moment;
+    }
+}
+
+/// What the ground does to one piece of running gear.
+#[derive(Clone, Debug)]
+pub struct FootLoad {
+    /// Force and moment about the reference point of the imprints.
+    pub wrench: Wrench,
+    /// −∂(force, moment)/∂(displacement, rotation) about the reference point \[N/m, N, N·m\].
+    pub stiffness: Matrix6<f64>,
+    /// Deepest sinkage of soil under load \[m\].
+    pub deepest: f64,
+    /// Polygons that carry load.
+    pub n_polygons: usize,
+}
+
+/// A loaded polygon, as handed to a listener.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadedPolygon {
+    /// Imprint that loads it, counted from the lowest.
+    pub layer: usize,
+    /// Owner with the largest share of its corners.
+    pub owner: u16,
+    /// Force on the gear \[N\], P2 Eq. (7).
+    pub force: Vec3,
+    /// Where it acts \[m\], P2 Eq. (8).
+    pub position: Vec3,
+    /// Mean pressure over the loaded part's polygon \[Pa\].
+    pub pressure: f64,
+    /// Loaded part of its horizontal area \[m²\].
+    pub area: f64,
+    /// Outward normal of the ground, scaled to a vertical part of one.
+    pub normal: Vec3,
+    /// Vertical stiffness \[N/m\].
+    pub stiffness: f64,
+}
+
+/// Imprints of one piece of running gear, lowest first: grousers, shoes, wheels. What a lower one covers is gone for the others.
+#[derive(Clone, Debug)]
+pub struct FootImprint {
+    /// The imprints.
+    pub layers: Vec<Imprint>,
+    /// Where moments are taken about \[m\].
+    pub reference: Vec3,
+}
+
+/// Present state of a node under one imprint.
+#[derive(Clone, Copy, Default)]
+struct Node {
+    /// Sinkage if the gear stood here \[m\].
+    z: f64,
+    /// Height of the ground then \[m\].
+    height: f64,
+    /// Share of the cell that the gear covers.
+    share: f64,
+    /// Depth of the gear below the present ground \[m\].
+    depth: f64,
+}
+
+/// Whether the gear presses nowhere between these corners: none is covered, or all lie below the gear.
+#[inline(always)]
+fn is_free(corners: &[Node]) -> bool {
+    corners.iter().all(|c| c.share == 0.0) || corners.iter().all(|c| c.depth <= 0.0)
+}
+
+impl FootImprint {
+    /// Force of the `terrain` on the gear after it moved by `motion` since the imprints were drawn.
+    ///
+    /// `motion` is small: undersides follow it in first order, h + d_z − ∂h/∂x d_x − ∂h/∂y d_y. Every loaded polygon is shown to `listen`.
+    pub fn load(
+        &self,
+        terrain: &Terrain,
+        motion: &Pose,
+        integration: &Integration,
+        mut listen: impl FnMut(&LoadedPolygon),
+    ) -> FootLoad {
+        let mut load =
+            FootLoad { wrench: Wrench::default(), stiffness: Matrix6::zeros(), deepest: 0.0, n_polygons: 0 };
+        for layer in 0..self.layers.len() {
+            let (nodes, is_any) = self.nodes(layer, terrain, motion, integration.partial);
+            if is_any {
+                self.load_layer(layer, &nodes, terrain, integration, &mut load, &mut listen);
+            }
+        }
+        load
+    }
+
+    /// Leaves the footprint: points inside the outline of the gear go down to its underside.
+    pub fn stamp(&self, terrain: &mut Terrain, motion: &Pose) {
+        for layer in 0..self.layers.len() {
+            let (nodes, _) = self.nodes(layer, terrain, motion, PartialLoad::Proportional);
+            let imprint = &self.layers[layer];
+            let n_grid = terrain.grid().n_x();
+            for j in 0..imprint.n_y {
+                for i in 0..imprint.n_x {
+                    let n = j * imprint.n_x + i;
+                    if imprint.nodes[n].coverage >= 0.5 && nodes[n].depth > 0.0 {
+                        terrain.stamp((imprint.j_0 + j) * n_grid + imprint.i_0 + i, nodes[n].height);
+                    }
+                }
+            }
+        }
+    }
+
+    /// F1, F2: sinkage, height and share of every node of a layer.
+    fn nodes(
+        &self,
+        layer: usize,
+        terrain: &Terrain,
+        motion: &Pose,
+        partial: PartialLoad,
+    ) -> (Vec<Node>, bool) {
+        let imprint = &self.layers[layer];
+        let turn: Matrix3<f64> = motion.rotation.to_rotation_matrix().matrix() - Matrix3::identity();
+        let shift = motion.translation.vector;
+        let is_moved = turn != Matrix3::zeros() || shift != Vec3::zeros();
+        let n_grid = terrain.grid().n_x();
+        let original = terrain.grid().heights();
+        let mut nodes = vec![Node::default(); imprint.nodes.len()];
+        let mut is_any = false;
+        for j in 0..imprint.n_y {
+            let row = (imprint.j_0 + j) * n_grid + imprint.i_0;
+            for i in 0..imprint.n_x {
+                let (n, node) = (j * imprint.n_x + i, row + i);
+                let gear = &imprint.nodes[n];
+                let z_0 = original[node];
+                let ground = terrain.height(node);
+                if !gear.is_known {
+                    nodes[n] = Node { z: z_0 - ground, height: ground, share: 0.0, depth: 0.0 };
+                    continue;
+                }
+                let mut h = gear.height;
+                if is_moved {
+                    let [x, y] = imprint.position(i, j);
+                    let d = turn * Vec3::new(x, y, h) + shift;
+                    h += d.z - gear.slope[0] * d.x - gear.slope[1] * d.y;
+                }
+                let is_loaded = h < ground && gear.coverage > 0.0;
+                let mut share = 0.0;
+                if gear.coverage > 0.0 {
+                    share = self.uncovered(layer, imprint.i_0 + i, imprint.j_0 + j) * gear.coverage;
+                }
+                if partial == PartialLoad::Step {
+                    // As printed: a point is loaded and follows the gear, or is not and stays.
+                    share = if is_loaded { share.round() } else { 0.0 };
+                    h = h.min(ground);
+                }
+                is_any |= h < ground;
+                nodes[n] = Node { z: z_0 - h, height: h, share, depth: ground - h };
+            }
+        }
+        (nodes, is_any)
+    }
+
+    /// Share of a node's cell that the layers below leave free.
+    #[inline(always)]
+    fn uncovered(&self, layer: usize, i: usize, j: usize) -> f64 {
+        let mut free = 1.0;
+        for below in &self.layers[..layer] {
+            let (a, b) = (i.wrapping_sub(below.i_0), j.wrapping_sub(below.j_0));
+            if a < below.n_x && b < below.n_y {
+                free *= 1.0 - below.nodes[b * below.n_x + a].coverage;
+            }
+        }
+        free
+    }
+
+    /// F3 to F5: integrates over all polygons of a layer.
+    fn load_layer(
+        &self,
+        layer: usize,
+        nodes: &[Node],
+        terrain: &Terrain,
+        integration: &Integration,
+        load: &mut FootLoad,
+        listen: &mut impl FnMut(&LoadedPolygon),
+    ) {
+        let imprint = &self.layers[layer];
+        let (n_x, n_grid) = (imprint.n_x, terrain.grid().n_x());
+        for j in 0..imprint.n_y.saturating_sub(1) {
+            for i in 0..n_x.saturating_sub(1) {
+                let n = j * n_x + i;
+                let cell = [n, n + 1, n + n_x, n + n_x + 1];
+                if is_free(&cell.map(|c| nodes[c])) {
+                    continue;
+                }
+                // Diagonals alternate so that no direction is preferred.
+                let (i_g, j_g) = (imprint.i_0 + i, imprint.j_0 + j);
+                let triangles = if (i_g + j_g) % 2 == 0 {
+                    [[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]]
+                } else {
+                    [[(0, 0), (1, 0), (0, 1)], [(1, 0), (1, 1), (0, 1)]]
+                };
+                for corners in triangles {
+                    let at = corners.map(|(a, b)| nodes[n + b * n_x + a]);
+                    if is_free(&at) {
+                        continue;
+                    }
+                    let on_grid = corners.map(|(a, b)| (j_g + b) * n_grid + i_g + a);
+                    let answer = answer(terrain, &on_grid, &at, integration);
+                    self.collect(layer, (i, j), &corners, &at, answer, load, listen);
+                    let soil = at
+                        .iter()
+                        .zip(&on_grid)
+                        .filter(|(c, node)| c.share > 0.0 && c.depth > 0.0 && !terrain.is_fixed(**node));
+                    load.deepest = soil.map(|(c, _)| c.z).fold(load.deepest, f64::max);
+                }
+            }
+        }
+    }
+
+    /// F5: force, position and stiffness of one polygon.
+    #[inline(always)]
+    fn collect(
+        &self,
+        layer: usize,
+        (i, j): (usize, usize),
+        corners: &[(usize, usize); 3],
+        at: &[Node; 3],
+        answer: PolygonLoad,
+        load: &mut FootLoad,
+        listen: &mut impl FnMut(&LoadedPolygon),
+    ) {
+        if answer.pressure <= 0.0 && answer.stiffness <= 0.0 {
+            return;
+        }
+        let imprint = &self.layers[layer];
+        let d = imprint.spacing;
+        let area = d * d / 2.0;
+        let points = [0, 1, 2].map(|k| {
+            let [x, y] = imprint.position(i + corners[k].0, j + corners[k].1);
+            Vec3::new(x, y, at[k].height)
+        });
+        let normal = (points[1] - points[0]).cross(&(points[2] - points[0])) / (d * d);
+        let force = normal * (answer.pressure * area); // P2 Eq. (7)
+        // P2 Eq. (8); a polygon that just touches answers from its middle.
+        let weights =
+            if answer.pressure > 0.0 { answer.moment.map(|m| m / answer.pressure) } else { [1.0 / 3.0; 3] };
+        let position = points[0] * weights[0] + points[1] * weights[1] + points[2] * weights[2];
+        let arm = position - self.reference;
+        load.wrench += Wrench { force, moment: arm.cross(&force) };
+        let stiffness = area * answer.stiffness.max(0.0);
+        let turned = arm.cross(&normal);
+        let w = Vector6::new(normal.x, normal.y, normal.z, turned.x, turned.y, turned.z);
+        load.stiffness.ger(stiffness, &w, &w, 1.0);
+        load.n_polygons += 1;
+        let largest = (0..3).max_by(|&a, &b| at[a].share.total_cmp(&at[b].share)).unwrap_or(0);
+        let owner = imprint.nodes[(j + corners[largest].1) * imprint.n_x + i + corners[largest].0].owner;
+        let share = at.iter().map(|c| c.share).sum::<f64>() / 3.0;
+        listen(&LoadedPolygon {
+            layer,
+            owner,
+            force,
+            position,
+            pressure: if share > 0.0 { answer.pressure / share } else { 0.0 },
+            area: share * area,
+            normal,
+            stiffness,
+        });
+    }
+}
+
+/// F3, F4: the ground's answer under one polygon.
+#[inline(always)]
+fn answer(terrain: &Terrain, on_grid: &[usize; 3], at: &[Node; 3], integration: &Integration) -> PolygonLoad {
+    let corners = Corners { z: at.map(|c| c.z), share: at.map(|c| c.share), depth: at.map(|c| c.depth) };
+    let (sub, partial) = (&integration.sub_triangles, integration.partial);
+    if on_grid.iter().all(|&node| terrain.is_fixed(node)) {
+        return integrate(sub, Stiff(Terrain::FIXED_STIFFNESS), &corners, partial, 0.0); // P2 Eq. (4)
+    }
+    let field = terrain.field();
+    let per_resolution = 1.0 / field.resolution();
+    let (elastic, contact) = match terrain.unloading() {
+        Unloading::Plastic { contact_distance } => (None, contact_distance),
+        Unloading::Elastic { stiffness } => {
+            (Some((stiffness, on_grid.map(|node| terrain.sinkage()[node]))), 0.0)
+        }
+    };
+    if field.is_per_node() {
+        let virgin = ThreeArrays { pressures: on_grid.map(|node| field.of_node(node)), per_resolution };
+        match elastic {
+            None => integrate(sub, virgin, &corners, partial, contact),
+            Some((stiffness, residual)) => {
+                integrate(sub, Reloaded { virgin, stiffness, residual }, &corners, partial, 0.0)
+            }
+        }
+    } else {
+        let virgin = OneArray { pressures: field.of_node(0), per_resolution };
+        match elastic {
+            None => integrate(sub, virgin, &corners, partial, contact),
+            Some((stiffness, residual)) => {
+                integrate(sub, Reloaded { virgin, stiffness, residual }, &corners, partial, 0.0)
+            }
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! A machine over drawn imprints: generalised forces and stiffness.
+
+use grouser_geometry::Pose;
+use nalgebra::{DMatrix, Matrix6xX, Vector6};
+use rayon::prelude::*;
+
+use super::{NoEquilibrium, motion, newton};
+use crate::contact::{FootImprint, FootLoad, Integration, LoadedPolygon};
+use crate::machine::Machine;
+use crate::mechanism::Configuration;
+use crate::terrain::Terrain;
+
+/// Imprints of all running gear, drawn where the machine stood, and how they answer when it moves a little.
+#[derive(Clone, Debug)]
+pub struct Frozen {
+    /// Where the imprints were drawn.
+    pub at: Configuration,
+    /// Poses of all bodies there.
+    pub poses: Vec<Pose>,
+    /// Imprint of each foot.
+    pub imprints: Vec<FootImprint>,
+    integration: Integration,
+}
+
+/// Generalised forces and their decrease with the degrees of freedom.
+pub(super) struct Balance {
+    pub forces: Vec<f64>,
+    pub stiffness: DMatrix<f64>,
+}
+
+impl Frozen {
+    /// E1: draws the imprints of all running gear.
+    pub fn new(
+        machine: &Machine,
+        terrain: &Terrain,
+        at: &Configuration,
+        travel: f64,
+        integration: Integration,
+    ) -> Result<Self, NoEquilibrium> {
+        let poses = machine.mechanism.poses(at);
+        for (foot, gear) in machine.feet.iter().enumerate() {
+            for (wheel, w) in gear.wheels.iter().enumerate() {
+                let p = poses[gear.body] * nalgebra::Point3::from(w.centre);
+                if !terrain.grid().contains(p.x, p.y) {
+                    return Err(NoEquilibrium::OffTerrain { foot, wheel, x: p.x, y: p.y });
+                }
+            }
+        }
+        let imprints = machine
+            .feet
+            .par_iter()
+            .map(|gear| gear.imprint(terrain, &poses[gear.body], travel, integration.partial))
+            .collect();
+        Ok(Self { at: at.clone(), poses, imprints, integration })
+    }
+
+    /// Load of one foot after its body moved to `pose`.
+    pub fn foot_load(
+        &self,
+        foot: usize,
+        machine: &Machine,
+        terrain: &Terrain,
+        pose: &Pose,
+        listen: impl FnMut(&LoadedPolygon),
+    ) -> FootLoad {
+        let moved = motion(&self.poses[machine.feet[foot].body], pose);
+        self.imprints[foot].load(terrain, &moved, &self.integration, listen)
+    }
+
+    /// Loads of all feet where the imprints were drawn; every loaded polygon is shown to `listen` with its foot.
+    pub fn loads(
+        &self,
+        machine: &Machine,
+        terrain: &Terrain,
+        mut listen: impl FnMut(usize, &LoadedPolygon),
+    ) -> Vec<FootLoad> {
+        (0..machine.feet.len())
+            .map(|foot| {
+                let body = machine.feet[foot].body;
+                self.foot_load(foot, machine, terrain, &self.poses[body], |polygon| listen(foot, polygon))
+            })
+            .collect()
+    }
+
+    /// E2 alone and in a few steps: near the balance, without drawing again.
+    pub fn settle(&self, machine: &Machine, terrain: &Terrain, tolerance: f64) -> Configuration {
+        let (q, _, _) = newton::solve(self, machine, terrain, tolerance, 3);
+        self.moved(machine, &q)
+    }
+
+    /// Lifts the machine from `at` until the ground carries less than `weight` \[N\] (P2 §2.4).
+    pub fn lift_below(
+        &self,
+        machine: &Machine,
+        terrain: &Terrain,
+        at: Configuration,
+        weight: f64,
+    ) -> Configuration {
+        let mut at = at;
+        for _ in 0..40 {
+            let balance = self.balance(machine, terrain, &machine.mechanism.dofs(&at));
+            let surplus = balance.forces[0];
+            if surplus < 0.0 {
+                break;
+            }
+            // A thousandth of a micrometre more than the stiffness asks for.
+            at.height += 1e-9 + (surplus + 1e-9 * weight) / balance.stiffness[(0, 0)].max(1e-3 * weight);
+        }
+        at
+    }
+
+    /// Motion of a foot's body from where its imprint was drawn to a configuration nearby.
+    pub fn motion_of(&self, foot: usize, machine: &Machine, to: &Configuration) -> Pose {
+        let body = machine.feet[foot].body;
+        motion(&self.poses[body], &machine.mechanism.poses(to)[body])
+    }
+
+    /// Names a sinkage beyond the data and forces that are not numbers.
+    pub(super) fn check(&self, machine: &Machine, terrain: &Terrain) -> Result<(), NoEquilibrium> {
+        let max_sinkage = terrain.field().max_sinkage();
+        for (foot, load) in self.loads(machine, terrain, |_, _| ()).iter().enumerate() {
+            if !load.wrench.force.iter().all(|f| f.is_finite()) {
+                return Err(NoEquilibrium::NonFiniteForce { foot });
+            }
+            if load.deepest > max_sinkage + 1e-9 {
+                return Err(NoEquilibrium::TooDeep { foot, sinkage: load.deepest, max_sinkage });
+            }
+        }
+        Ok(())
+    }
+
+    /// Configuration with other values of the degrees of freedom.
+    pub(super) fn moved(&self, machine: &Machine, q: &[f64]) -> Configuration {
+        let mut at = self.at.clone();
+        machine.mechanism.set_dofs(&mut at, q);
+        at
+    }
+
+    /// Forces and stiffness at `q`.
+    pub(super) fn balance(&self, machine: &Machine, terrain: &Terrain, q: &[f64]) -> Balance {
+        let mechanism = &machine.mechanism;
+        let at = self.moved(machine, q);
+        let poses = mechanism.poses(&at);
+        let twists = mechanism.twists(&at, &poses);
+        let n = twists.len();
+        let mut forces = mechanism.own_forces(&at, &poses, &twists);
+        let mut stiffness = DMatrix::zeros(n, n);
+        // Weight that shifts with rotation.
+        let step = 1e-6;
+        for column in 1..n {
+            let mut other = q.to_vec();
+            other[column] += step;
+            let at = self.moved(machine, &other);
+            let poses = mechanism.poses(&at);
+            let own = mechanism.own_forces(&at, &poses, &mechanism.twists(&at, &poses));
+            for row in 0..n {
+                stiffness[(row, column)] -= (own[row] - forces[row]) / step;
+            }
+        }
+        let loads: Vec<FootLoad> = (0..machine.feet.len())
+            .into_par_iter()
+            .map(|foot| self.foot_load(foot, machine, terrain, &poses[machine.feet[foot].body], |_| ()))
+            .collect();
+        for (foot, load) in loads.iter().enumerate() {
+            let o = self.imprints[foot].reference;
+            let mut t = Matrix6xX::zeros(n);
+            for (k, twist) in twists.iter().enumerate() {
+                if mechanism.hangs_on(machine.feet[foot].body, twist.body) {
+                    let (v, w) = (twist.velocity(o), twist.omega);
+                    t.set_column(k, &Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z));
+                }
+            }
+            let (f, m) = (load.wrench.force, load.wrench.moment);
+            let q_f = t.tr_mul(&Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z));
+            for k in 0..n {
+                forces[k] += q_f[k];
+            }
+            stiffness += t.transpose() * load.stiffness * &t;
+        }
+        Balance { forces, stiffness }
+    }
+}

@@ -1,0 +1,115 @@
+//! Newton's method, bracketed along each direction: the default search.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::Frozen;
+use super::frozen::Balance;
+use crate::machine::Machine;
+use crate::mechanism::GRAVITY;
+use crate::terrain::Terrain;
+
+/// Largest motion while imprints stay as drawn \[m, rad\].
+const REACH: f64 = 0.1;
+
+/// E2: degrees of freedom in balance, those at a stop, and the evaluations spent.
+pub(super) fn solve(
+    frozen: &Frozen,
+    machine: &Machine,
+    terrain: &Terrain,
+    tolerance: f64,
+    max_iterations: usize,
+) -> (Vec<f64>, Vec<usize>, usize) {
+    let mechanism = &machine.mechanism;
+    let n = mechanism.n_dofs();
+    let start = mechanism.dofs(&frozen.at);
+    let mut q = start.clone();
+    let mut n_evaluations = 1;
+    let mut here = frozen.balance(machine, terrain, &q);
+    let mut stops = Vec::new();
+    for _ in 0..max_iterations {
+        stops = pressed_stops(machine, &q, &here.forces);
+        let mut d = direction(&here, &stops, mechanism.mass() * GRAVITY);
+        // Stay near the drawing and within the stops.
+        let largest = d.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        if largest > REACH / 2.0 {
+            d *= REACH / 2.0 / largest;
+        }
+        let mut is_clipped = false;
+        let target: Vec<f64> = (0..n)
+            .map(|k| {
+                let [low, high] = mechanism.limits(k);
+                let near = (q[k] + d[k]).clamp(start[k] - REACH, start[k] + REACH);
+                is_clipped |= near != q[k] + d[k];
+                near.clamp(low, high)
+            })
+            .collect();
+        let d: Vec<f64> = (0..n).map(|k| target[k] - q[k]).collect();
+        let work = |b: &Balance| b.forces.iter().zip(&d).map(|(f, d)| f * d).sum::<f64>();
+        let uphill = work(&here);
+        let mut there = frozen.balance(machine, terrain, &target);
+        n_evaluations += 1;
+        let mut t = 1.0;
+        if uphill > 0.0 && work(&there) < -0.5 * uphill {
+            // Overshot: the balance along d lies between; close in on it (Illinois).
+            let (mut a, mut f_a, mut b, mut f_b) = (0.0, uphill, 1.0, work(&there));
+            for _ in 0..30 {
+                t = (a * f_b - b * f_a) / (f_b - f_a);
+                let point: Vec<f64> = (0..n).map(|k| q[k] + t * d[k]).collect();
+                there = frozen.balance(machine, terrain, &point);
+                n_evaluations += 1;
+                let f = work(&there);
+                if f.abs() <= 0.2 * uphill || (b - a) < 1e-9 {
+                    break;
+                }
+                if f > 0.0 {
+                    (a, f_a) = (t, f);
+                    f_b *= 0.5;
+                } else {
+                    (b, f_b) = (t, f);
+                    f_a *= 0.5;
+                }
+            }
+        }
+        let step = d.iter().fold(0.0_f64, |a, b| a.max((t * b).abs()));
+        for k in 0..n {
+            q[k] += t * d[k];
+        }
+        here = there;
+        let is_at_edge = q.iter().zip(&start).any(|(a, b)| (a - b).abs() > 0.999 * REACH);
+        if step <= tolerance || (is_clipped && is_at_edge) {
+            break;
+        }
+    }
+    (q, stops, n_evaluations)
+}
+
+/// Degrees of freedom that lie on a stop and are pushed against it.
+fn pressed_stops(machine: &Machine, q: &[f64], forces: &[f64]) -> Vec<usize> {
+    (0..q.len())
+        .filter(|&k| {
+            let [low, high] = machine.mechanism.limits(k);
+            (q[k] <= low + 1e-12 && forces[k] < 0.0) || (q[k] >= high - 1e-12 && forces[k] > 0.0)
+        })
+        .collect()
+}
+
+/// Newton's direction K⁻¹ Q; where K is not positive definite (gear in the air, near turning over) K is raised until it is.
+fn direction(here: &Balance, stops: &[usize], weight: f64) -> DVector<f64> {
+    let n = here.forces.len();
+    let mut k = (&here.stiffness + here.stiffness.transpose()) * 0.5;
+    let mut force = DVector::from_column_slice(&here.forces);
+    for &stop in stops {
+        k.fill_row(stop, 0.0);
+        k.fill_column(stop, 0.0);
+        k[(stop, stop)] = weight;
+        force[stop] = 0.0;
+    }
+    let scale = (0..n).map(|i| k[(i, i)].abs()).fold(weight, f64::max);
+    let mut raise = 0.0;
+    loop {
+        if let Some(cholesky) = Cholesky::new(&k + DMatrix::identity(n, n) * raise) {
+            return cholesky.solve(&force);
+        }
+        raise = if raise == 0.0 { 1e-9 * scale } else { 10.0 * raise };
+    }
+}

@@ -1,0 +1,140 @@
+//! Running gear: wheels and belts of shoes on a body, and their imprint on the ground.
+
+mod belt;
+mod hull;
+mod wheel;
+pub mod x3d;
+
+use grouser_geometry::{Pose, Vec3};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+pub use belt::{Belt, Shoe, ShoeShape};
+pub use hull::{Hull, HullPoint};
+pub use wheel::{TreadPattern, TreadedWheel, Wheel, WheelShape, treaded_wheel};
+
+use crate::contact::FootImprint;
+use crate::imprint::Imprint;
+use crate::polygon::PartialLoad;
+use crate::terrain::Terrain;
+
+/// Wheels and belts that stand on one body: a wheel, or a bogie with its track.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Foot {
+    /// The body.
+    pub body: usize,
+    /// Wheels, axles along y of the body.
+    pub wheels: Vec<Wheel>,
+    /// Chains and tracks around them.
+    pub belts: Vec<Belt>,
+}
+
+/// Why running gear cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum GearError {
+    /// A size without meaning.
+    #[error("{part}: {quantity} is {value}, expected {expected}")]
+    Size {
+        /// The part.
+        part: &'static str,
+        /// The quantity.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// A belt around a wheel that is not there.
+    #[error("the belt runs around wheel {wheel}, the foot has {n_wheels}; wheels count from 0")]
+    NoSuchWheel {
+        /// The wheel.
+        wheel: usize,
+        /// Wheels of the foot.
+        n_wheels: usize,
+    },
+    /// Shoes that do not fill the belt.
+    #[error(
+        "{n_shoes} shoes of {pitch} m pitch make {length:.4} m, the way around the wheels is {needed:.4} m; a tight belt may differ by \
+         1 %; remedy: pitch {:.5} m",
+        needed / *n_shoes as f64
+    )]
+    BeltLength {
+        /// Shoes.
+        n_shoes: usize,
+        /// Their pitch \[m\].
+        pitch: f64,
+        /// Length of the belt \[m\].
+        length: f64,
+        /// Length of the way around the wheels \[m\].
+        needed: f64,
+    },
+}
+
+pub(crate) fn positive(part: &'static str, quantity: &'static str, value: f64) -> Result<(), GearError> {
+    if value.is_finite() && value > 0.0 {
+        Ok(())
+    } else {
+        Err(GearError::Size { part, quantity, value, expected: "a finite value above zero" })
+    }
+}
+
+/// Height above the highest ground under the gear up to which its underside is drawn \[m\].
+const HEADROOM: f64 = 0.2;
+
+impl Foot {
+    /// Refuses gear without meaning.
+    pub fn check(&self) -> Result<(), GearError> {
+        for wheel in &self.wheels {
+            wheel.check()?;
+        }
+        self.belts.iter().try_for_each(|belt| belt.check(&self.wheels))
+    }
+
+    /// Grid models of the gear on a body at `pose` after the wheels have rolled by `travel` \[m\].
+    ///
+    /// Owners are wheel numbers in the layer of wheels, shoe numbers in the others.
+    pub fn imprint(&self, terrain: &Terrain, pose: &Pose, travel: f64, partial: PartialLoad) -> FootImprint {
+        let grid = terrain.grid();
+        let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+        let depth = self.belts.iter().map(|b| b.shoe.depth()).fold(0.0, f64::max);
+        for wheel in &self.wheels {
+            let half = self.belts.iter().map(|b| b.shoe.half_width()).fold(wheel.half_width(), f64::max);
+            let reach = wheel.outer_radius() + depth;
+            let reach = Vec3::new(reach, half, reach);
+            low = low.inf(&(wheel.centre - reach));
+            high = high.sup(&(wheel.centre + reach));
+        }
+        let (mut min, mut max) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for corner in 0..8 {
+            let pick = |k: usize| if corner >> k & 1 == 0 { low[k] } else { high[k] };
+            let p = pose * nalgebra::Point3::new(pick(0), pick(1), pick(2));
+            for k in 0..2 {
+                min[k] = min[k].min(p[k]);
+                max[k] = max[k].max(p[k]);
+            }
+        }
+        let probe = Imprint::new(grid, min, max, f64::INFINITY, partial);
+        let rows = (0..probe.n_y).flat_map(|j| (0..probe.n_x).map(move |i| (i, j)));
+        let highest = rows
+            .map(|(i, j)| terrain.height((probe.j_0 + j) * grid.n_x() + probe.i_0 + i))
+            .fold(f64::NEG_INFINITY, f64::max);
+        let blank = || Imprint::new(grid, min, max, highest + HEADROOM, partial);
+        let mut layers = Vec::with_capacity(3);
+        if !self.belts.is_empty() {
+            let (mut grousers, mut shoes) = (blank(), blank());
+            for belt in &self.belts {
+                belt.draw(&self.wheels, pose, travel, &mut grousers, &mut shoes);
+            }
+            layers.extend([grousers, shoes].into_iter().filter(|layer| !layer.is_empty()));
+        }
+        let mut wheels = blank();
+        for (owner, wheel) in self.wheels.iter().enumerate() {
+            wheel.draw(pose, travel, &mut wheels, owner as u16);
+        }
+        layers.push(wheels);
+        for layer in &mut layers {
+            layer.carry_edges(grid);
+        }
+        FootImprint { layers, reference: pose.translation.vector }
+    }
+}

@@ -1,0 +1,177 @@
+//! Grid model of running gear: the height of its underside at the points of the ground (P2 §2.3.1).
+//!
+//! An [`Imprint`] covers a window of the terrain grid. Cylinders, plates and triangle surfaces are drawn into it.
+
+mod cylinder;
+mod plate;
+mod surface;
+
+use grouser_geometry::HeightGrid;
+
+pub use plate::Plate;
+
+use crate::polygon::PartialLoad;
+
+/// Underside of running gear at one point of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImprintNode {
+    /// Share of the point's cell that the gear covers (0…1).
+    pub coverage: f64,
+    /// Height of the underside \[m\].
+    pub height: f64,
+    /// Slope of the underside ∂h/∂x, ∂h/∂y \[-\].
+    pub slope: [f64; 2],
+    /// Which object of the gear lies here.
+    pub owner: u16,
+    /// Whether `height` is known: also just beyond the edge of the gear, where it is carried on.
+    pub is_known: bool,
+}
+
+const EMPTY: ImprintNode =
+    ImprintNode { coverage: 0.0, height: f64::INFINITY, slope: [0.0; 2], owner: 0, is_known: false };
+
+/// Grid model over a window of the terrain grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imprint {
+    /// First node of the window along x.
+    pub i_0: usize,
+    /// First node of the window along y.
+    pub j_0: usize,
+    /// Nodes of the window along x.
+    pub n_x: usize,
+    /// Nodes of the window along y.
+    pub n_y: usize,
+    /// Nodes of the window, x fastest.
+    pub nodes: Vec<ImprintNode>,
+    pub(crate) spacing: f64,
+    origin: [f64; 2],
+    ceiling: f64,
+    partial: PartialLoad,
+}
+
+impl Imprint {
+    /// An empty imprint over the nodes in and around the box from `min` to `max` \[m\]; undersides above `ceiling` \[m\] are left out.
+    pub fn new(grid: &HeightGrid, min: [f64; 2], max: [f64; 2], ceiling: f64, partial: PartialLoad) -> Self {
+        let d = grid.spacing();
+        let window = |low: f64, high: f64, origin: f64, n: usize| {
+            let first = (((low - origin) / d).floor() - 1.0).clamp(0.0, n as f64) as usize;
+            let last = (((high - origin) / d).ceil() + 1.0).clamp(-1.0, (n - 1) as f64);
+            (first, (last - first as f64 + 1.0).max(0.0) as usize)
+        };
+        let (i_0, n_x) = window(min[0], max[0], grid.origin()[0], grid.n_x());
+        let (j_0, n_y) = window(min[1], max[1], grid.origin()[1], grid.n_y());
+        let origin = [grid.origin()[0] + d * i_0 as f64, grid.origin()[1] + d * j_0 as f64];
+        Self { i_0, j_0, n_x, n_y, nodes: vec![EMPTY; n_x * n_y], spacing: d, origin, ceiling, partial }
+    }
+
+    /// Whether the gear covers no node.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.iter().all(|n| n.coverage == 0.0)
+    }
+
+    /// Position of node (`i`, `j`) of the window \[m\].
+    #[inline(always)]
+    pub fn position(&self, i: usize, j: usize) -> [f64; 2] {
+        [self.origin[0] + self.spacing * i as f64, self.origin[1] + self.spacing * j as f64]
+    }
+
+    /// Window indices of the nodes within the box from `min` to `max` \[m\]: i and j ranges.
+    fn range(&self, min: [f64; 2], max: [f64; 2]) -> [std::ops::Range<usize>; 2] {
+        let along = |k: usize, n: usize| {
+            let low = ((min[k] - self.origin[k]) / self.spacing).ceil().clamp(0.0, n as f64) as usize;
+            let high =
+                (((max[k] - self.origin[k]) / self.spacing).floor() + 1.0).clamp(0.0, n as f64) as usize;
+            low..high.max(low)
+        };
+        [along(0, self.n_x), along(1, self.n_y)]
+    }
+
+    /// Adds an object at a node: coverages add up, heights and slopes average by coverage.
+    #[inline(always)]
+    fn add(&mut self, node: usize, coverage: f64, height: f64, slope: [f64; 2], owner: u16) {
+        let old = &mut self.nodes[node];
+        if old.coverage == 0.0 {
+            *old = ImprintNode { coverage, height, slope, owner, is_known: true };
+            return;
+        }
+        match self.partial {
+            PartialLoad::Step => {
+                if height < old.height {
+                    *old = ImprintNode { coverage, height, slope, owner, is_known: true };
+                }
+            }
+            PartialLoad::Proportional => {
+                let (a, b) = (old.coverage / (old.coverage + coverage), coverage / (old.coverage + coverage));
+                let owner = if coverage > old.coverage { owner } else { old.owner };
+                *old = ImprintNode {
+                    coverage: (old.coverage + coverage).min(1.0),
+                    height: a * old.height + b * height,
+                    slope: [a * old.slope[0] + b * slope[0], a * old.slope[1] + b * slope[1]],
+                    owner,
+                    is_known: true,
+                };
+            }
+        }
+    }
+
+    /// Carries the underside on by one node beyond the edge of the gear, parallel to the `ground`'s undisturbed heights.
+    ///
+    /// The soil under a vertical edge lies at full depth up to the edge; without this it would rise within one cell.
+    pub fn carry_edges(&mut self, ground: &HeightGrid) {
+        if self.partial == PartialLoad::Step {
+            return;
+        }
+        let heights = ground.heights();
+        let at = |i: usize, j: usize| heights[(self.j_0 + j) * ground.n_x() + self.i_0 + i];
+        let mut carried = Vec::new();
+        for j in 0..self.n_y {
+            for i in 0..self.n_x {
+                if self.nodes[j * self.n_x + i].coverage > 0.0 {
+                    continue;
+                }
+                // Nearest covered neighbours: first along the axes, else across the corners.
+                for reach in [[(-1, 0), (1, 0), (0, -1), (0, 1)], [(-1, -1), (1, -1), (-1, 1), (1, 1)]] {
+                    let (mut n, mut depth, mut slope, mut owner) = (0.0, 0.0, [0.0; 2], 0);
+                    for (di, dj) in reach {
+                        let (a, b) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
+                        if a >= self.n_x || b >= self.n_y {
+                            continue;
+                        }
+                        let near = &self.nodes[b * self.n_x + a];
+                        if near.coverage > 0.0 {
+                            n += 1.0;
+                            depth += near.height - at(a, b);
+                            slope = [slope[0] + near.slope[0], slope[1] + near.slope[1]];
+                            owner = near.owner;
+                        }
+                    }
+                    if n > 0.0 {
+                        let slope = [slope[0] / n, slope[1] / n];
+                        let height = at(i, j) + depth / n;
+                        let node = ImprintNode { coverage: 0.0, height, slope, owner, is_known: true };
+                        carried.push((j * self.n_x + i, node));
+                        break;
+                    }
+                }
+            }
+        }
+        for (n, node) in carried {
+            self.nodes[n] = node;
+        }
+    }
+}
+
+/// Width of a cell of the grid along a horizontal direction, per spacing: 1 along the axes, √2 across.
+///
+/// With it, rows of points cover a strip by its exact width along the axes and across, and nearly so in between.
+#[inline(always)]
+fn cell_width(direction: &grouser_geometry::Vec3) -> f64 {
+    let horizontal = direction.x.hypot(direction.y);
+    (direction.x.abs() + direction.y.abs()) / (horizontal * horizontal).max(1e-12)
+}
+
+/// Share of the interval of `width` around `u` that lies within `low` to `high`.
+#[inline(always)]
+fn overlap(u: f64, width: f64, low: f64, high: f64) -> f64 {
+    (((u + width / 2.0).min(high) - (u - width / 2.0).max(low)) / width).clamp(0.0, 1.0)
+}

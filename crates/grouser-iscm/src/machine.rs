@@ -1,0 +1,59 @@
+//! A machine: bodies, joints and the running gear that carries them.
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::gear::{Foot, GearError};
+use crate::mechanism::Mechanism;
+
+/// A vehicle ready to stand on ground.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Machine {
+    /// Bodies and joints.
+    pub mechanism: Mechanism,
+    /// Running gear.
+    pub feet: Vec<Foot>,
+}
+
+/// Why a machine cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum MachineError {
+    /// Nothing to stand on.
+    #[error("the machine has no running gear; expected at least one wheel")]
+    NoGear,
+    /// Gear on a body that is not there.
+    #[error("running gear {foot} stands on body {body}, the machine has {n_bodies}; bodies count from 0")]
+    NoSuchBody {
+        /// Running gear, counted from 0.
+        foot: usize,
+        /// The body.
+        body: usize,
+        /// Bodies of the machine.
+        n_bodies: usize,
+    },
+    /// Gear without meaning.
+    #[error("running gear {foot}: {reason}")]
+    Gear {
+        /// Running gear, counted from 0.
+        foot: usize,
+        /// What is wrong.
+        reason: GearError,
+    },
+}
+
+impl Machine {
+    /// Checks and takes the parts.
+    pub fn new(mechanism: Mechanism, feet: Vec<Foot>) -> Result<Self, MachineError> {
+        if feet.iter().all(|f| f.wheels.is_empty()) {
+            return Err(MachineError::NoGear);
+        }
+        for (foot, gear) in feet.iter().enumerate() {
+            let n_bodies = mechanism.bodies().len();
+            if gear.body >= n_bodies {
+                return Err(MachineError::NoSuchBody { foot, body: gear.body, n_bodies });
+            }
+            gear.check().map_err(|reason| MachineError::Gear { foot, reason })?;
+        }
+        Ok(Self { mechanism, feet })
+    }
+}

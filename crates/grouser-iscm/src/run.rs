@@ -1,0 +1,240 @@
+//! Driving a machine over ground (P2 §2.4). Steps as in `docs/theory/iscm.md`, R1 to R5.
+
+use grouser_geometry::Vec3;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::equilibrium::{Equilibrium, Frozen, NoEquilibrium, SearchSettings, equilibrium, start_position};
+use crate::machine::Machine;
+use crate::mechanism::{Configuration, GRAVITY, Joint};
+use crate::rolling_resistance::{WheelResistance, foot_resistance};
+use crate::route::Route;
+use crate::terrain::Terrain;
+
+/// How a machine is driven.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunSettings {
+    /// Way of the first body's origin.
+    pub route: Route,
+    /// Distance between equilibria \[m\], at least √2 times the spacing of the terrain.
+    pub run_step: f64,
+    /// Simplified equilibria in between.
+    pub intermediate_steps: usize,
+    /// Accuracy and means of the search.
+    pub search: SearchSettings,
+}
+
+/// Everything that changes while driving: what a restart needs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunState {
+    /// The ground with its ruts.
+    pub terrain: Terrain,
+    /// Where the machine stands.
+    pub configuration: Configuration,
+    /// Run steps done.
+    pub n_steps: usize,
+    /// Centres of all wheels at the last equilibrium \[m\].
+    pub wheel_centres: Vec<Vec<Vec3>>,
+    /// Run steps that ended above the position tolerance, as accurate as the grid allows.
+    pub n_limited: usize,
+}
+
+/// What one run step found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepResult {
+    /// Distance driven \[m\].
+    pub distance: f64,
+    /// Where the machine stands.
+    pub configuration: Configuration,
+    /// Rolling resistance of each wheel of each foot.
+    pub wheels: Vec<Vec<WheelResistance>>,
+    /// Sum over all wheels, P2 Eq. (18).
+    pub total: WheelResistance,
+    /// Vertical force of the ground on each foot \[N\].
+    pub foot_loads: Vec<f64>,
+    /// Evaluations of the ground's forces.
+    pub n_evaluations: usize,
+}
+
+/// Why a run cannot start or go on.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RunError {
+    /// Too short a step.
+    #[error(
+        "the run step of {run_step} m is below √2 times the terrain spacing, {least:.5} m: equilibria would meet no new polygons (P2 §2.4); \
+         remedy: a longer step or finer terrain"
+    )]
+    StepTooShort {
+        /// The step \[m\].
+        run_step: f64,
+        /// Least step \[m\].
+        least: f64,
+    },
+    /// No way to drive.
+    #[error(
+        "the route has {n_points} points and a length of {length} m; expected at least two points and one run step of {run_step} m"
+    )]
+    Route {
+        /// Points.
+        n_points: usize,
+        /// Length \[m\].
+        length: f64,
+        /// Run step \[m\].
+        run_step: f64,
+    },
+    /// No rest.
+    #[error("after {distance:.3} m: {reason}")]
+    NoEquilibrium {
+        /// Distance driven \[m\].
+        distance: f64,
+        /// Why.
+        reason: NoEquilibrium,
+    },
+}
+
+impl RunState {
+    /// R1: sets the machine on the ground at the start of the route, finds its rest and leaves its footprint.
+    pub fn start(machine: &Machine, terrain: Terrain, settings: &RunSettings) -> Result<Self, RunError> {
+        let least = std::f64::consts::SQRT_2 * terrain.grid().spacing();
+        let run_step = settings.run_step;
+        if !(run_step >= least * (1.0 - 1e-9) && run_step.is_finite()) {
+            return Err(RunError::StepTooShort { run_step, least });
+        }
+        let (n_points, length) = (settings.route.points.len(), settings.route.length());
+        if n_points < 2 || length < run_step {
+            return Err(RunError::Route { n_points, length, run_step });
+        }
+        let (position, heading) = settings.route.at(0.0);
+        let height = terrain.grid().height_at(position[0], position[1]) + 1.0;
+        let mut configuration = machine.mechanism.at(position, heading, height);
+        steer(machine, &settings.route, 0.0, &mut configuration);
+        let failed = |reason| RunError::NoEquilibrium { distance: 0.0, reason };
+        let from =
+            start_position(machine, &terrain, &configuration, 0.0, &settings.search).map_err(failed)?;
+        let rest = equilibrium(machine, &terrain, &from, 0.0, &settings.search).map_err(failed)?;
+        let mut state = Self {
+            terrain,
+            configuration: rest.configuration.clone(),
+            n_steps: 0,
+            wheel_centres: wheel_centres(machine, &rest.frozen),
+            n_limited: 0,
+        };
+        leave_footprint(&mut state.terrain, &rest.frozen);
+        Ok(state)
+    }
+
+    /// Distance driven \[m\].
+    pub fn distance(&self, settings: &RunSettings) -> f64 {
+        self.n_steps as f64 * settings.run_step
+    }
+
+    /// Whether another step fits on the route.
+    pub fn can_go_on(&self, settings: &RunSettings) -> bool {
+        (self.n_steps + 1) as f64 * settings.run_step <= settings.route.length() + 1e-9
+    }
+
+    /// Drives one run step.
+    pub fn step(&mut self, machine: &Machine, settings: &RunSettings) -> Result<StepResult, RunError> {
+        let before = self.distance(settings);
+        let n = settings.intermediate_steps + 1;
+        for k in 1..n {
+            let distance = before + settings.run_step * k as f64 / n as f64;
+            self.intermediate(machine, settings, distance)?; // R2, R3
+        }
+        let distance = before + settings.run_step;
+        let rest = self.rest(machine, settings, distance, &settings.search)?; // R4
+        let result = self.measure(machine, distance, &rest); // R5
+        self.configuration = rest.configuration.clone();
+        self.wheel_centres = wheel_centres(machine, &rest.frozen);
+        self.n_limited += usize::from(rest.last_change > settings.search.position_tolerance);
+        self.n_steps += 1;
+        leave_footprint(&mut self.terrain, &rest.frozen);
+        Ok(result)
+    }
+
+    /// R2: a loose equilibrium; R3: lifted until the ground carries less than the weight; footprint.
+    fn intermediate(
+        &mut self,
+        machine: &Machine,
+        settings: &RunSettings,
+        distance: f64,
+    ) -> Result<(), RunError> {
+        let mut at = self.configuration.clone();
+        (at.position, at.heading) = settings.route.at(distance);
+        steer(machine, &settings.route, distance, &mut at);
+        let failed = |reason| RunError::NoEquilibrium { distance, reason };
+        let frozen = Frozen::new(machine, &self.terrain, &at, distance, settings.search.integration())
+            .map_err(failed)?;
+        let settled = frozen.settle(machine, &self.terrain, 1e-4);
+        let weight = machine.mechanism.mass() * GRAVITY;
+        let lifted = frozen.lift_below(machine, &self.terrain, settled, weight);
+        for (foot, imprint) in frozen.imprints.iter().enumerate() {
+            imprint.stamp(&mut self.terrain, &frozen.motion_of(foot, machine, &lifted));
+        }
+        self.configuration = lifted;
+        Ok(())
+    }
+
+    fn rest(
+        &self,
+        machine: &Machine,
+        settings: &RunSettings,
+        distance: f64,
+        search: &SearchSettings,
+    ) -> Result<Equilibrium, RunError> {
+        let mut at = self.configuration.clone();
+        (at.position, at.heading) = settings.route.at(distance);
+        steer(machine, &settings.route, distance, &mut at);
+        equilibrium(machine, &self.terrain, &at, distance, search)
+            .map_err(|reason| RunError::NoEquilibrium { distance, reason })
+    }
+
+    fn measure(&self, machine: &Machine, distance: f64, rest: &Equilibrium) -> StepResult {
+        let mut polygons = vec![Vec::new(); machine.feet.len()];
+        let loads = rest.frozen.loads(machine, &self.terrain, |foot, polygon| polygons[foot].push(*polygon));
+        let centres = wheel_centres(machine, &rest.frozen);
+        let wheels: Vec<Vec<WheelResistance>> = (0..machine.feet.len())
+            .map(|foot| {
+                let moved: Vec3 =
+                    centres[foot].iter().zip(&self.wheel_centres[foot]).map(|(a, b)| a - b).sum();
+                let pose = &rest.frozen.poses[machine.feet[foot].body];
+                let rolling = moved.try_normalize(1e-12).unwrap_or_else(|| pose.rotation * Vec3::x()); // P2 Eq. (15)
+                let n_layers = rest.frozen.imprints[foot].layers.len();
+                foot_resistance(&machine.feet[foot], pose, distance, rolling, &polygons[foot], n_layers)
+            })
+            .collect();
+        StepResult {
+            distance,
+            configuration: rest.configuration.clone(),
+            total: WheelResistance::total(wheels.iter().flatten()),
+            wheels,
+            foot_loads: loads.iter().map(|l| l.wrench.force.z).collect(),
+            n_evaluations: rest.n_evaluations,
+        }
+    }
+}
+
+/// Turns every steered joint so that its body's heading is that of the route at the body's distance behind the first one.
+fn steer(machine: &Machine, route: &Route, distance: f64, at: &mut Configuration) {
+    for (n, body) in machine.mechanism.bodies().iter().enumerate().skip(1) {
+        if let Joint::Held { axis } = body.joint
+            && axis.z.abs() > 0.5
+        {
+            let (_, heading) = route.at(distance + body.attachment.x);
+            let turn = heading - at.heading;
+            at.joints[n] = axis.z.signum() * turn.sin().atan2(turn.cos());
+        }
+    }
+}
+
+fn wheel_centres(machine: &Machine, frozen: &Frozen) -> Vec<Vec<Vec3>> {
+    let centre = |body: usize, c: Vec3| (frozen.poses[body] * nalgebra::Point3::from(c)).coords;
+    machine.feet.iter().map(|f| f.wheels.iter().map(|w| centre(f.body, w.centre)).collect()).collect()
+}
+
+fn leave_footprint(terrain: &mut Terrain, frozen: &Frozen) {
+    for imprint in &frozen.imprints {
+        imprint.stamp(terrain, &grouser_geometry::Pose::identity());
+    }
+}

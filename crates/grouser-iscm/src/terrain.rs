@@ -1,0 +1,260 @@
+//! Ground: heights, sinkage and load history on a grid, with the relationships that press back.
+
+use grouser_geometry::HeightGrid;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::pressure::PressureField;
+
+/// How a point of ground behaves (P2 §2.2.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum GroundKind {
+    /// Soil: sinks along its pressure–sinkage relationship.
+    Normal,
+    /// Rock, stump: presses back with [`Terrain::FIXED_STIFFNESS`] and keeps its height.
+    Fixed,
+}
+
+/// What the soil does when the load goes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Unloading {
+    /// The rut stays (P2). A loaded point takes up its full pressure over this distance of renewed contact \[m\].
+    Plastic {
+        /// Distance over which renewed contact builds up \[m\].
+        contact_distance: f64,
+    },
+    /// The soil springs back and is reloaded along a straight line of this stiffness \[Pa/m\].
+    Elastic {
+        /// Pressure per sinkage on unloading \[Pa/m\].
+        stiffness: f64,
+    },
+}
+
+impl Default for Unloading {
+    fn default() -> Self {
+        Self::Plastic { contact_distance: 1e-3 }
+    }
+}
+
+/// Shape of a rigid object on the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum RigidShape {
+    /// Flat top, vertical walls.
+    Stump,
+    /// Half ellipsoid.
+    Rock,
+}
+
+/// Ground as a grid of points with a history.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Terrain {
+    grid: HeightGrid,
+    field: PressureField,
+    unloading: Unloading,
+    kind: Vec<GroundKind>,
+    sinkage: Vec<f64>,
+    deepest: Vec<f64>,
+    loadings: Vec<u32>,
+}
+
+/// Why a terrain cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum TerrainError {
+    /// The field of relationships was made for another grid.
+    #[error(
+        "the relationships were made for {field} nodes, the grid has {grid}; remedy: make both from the same grid"
+    )]
+    FieldSize {
+        /// Nodes of the field.
+        field: usize,
+        /// Nodes of the grid.
+        grid: usize,
+    },
+    /// A bad unloading parameter.
+    #[error("unloading: {parameter} is {value}, expected a finite value above zero")]
+    Unloading {
+        /// The parameter.
+        parameter: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A rigid object without a node.
+    #[error(
+        "the rigid object at ({x}, {y}) m of {diameter} m diameter covers no node of the grid; expected a place on the grid and a \
+         diameter above the spacing of {spacing} m"
+    )]
+    ObjectWithoutNode {
+        /// Position \[m\].
+        x: f64,
+        /// Position \[m\].
+        y: f64,
+        /// Diameter \[m\].
+        diameter: f64,
+        /// Spacing of the grid \[m\].
+        spacing: f64,
+    },
+}
+
+impl Terrain {
+    /// Pressure per sinkage of fixed ground \[Pa/m\], P2 Eq. (4).
+    pub const FIXED_STIFFNESS: f64 = 1e9;
+
+    /// Undisturbed ground over `grid`.
+    pub fn new(grid: HeightGrid, field: PressureField) -> Result<Self, TerrainError> {
+        let n = grid.n_nodes();
+        if let Some(nodes) = field.n_nodes().filter(|&nodes| nodes != n) {
+            return Err(TerrainError::FieldSize { field: nodes, grid: n });
+        }
+        Ok(Self {
+            grid,
+            field,
+            unloading: Unloading::default(),
+            kind: vec![GroundKind::Normal; n],
+            sinkage: vec![0.0; n],
+            deepest: vec![0.0; n],
+            loadings: vec![0; n],
+        })
+    }
+
+    /// The same ground with another behaviour on unloading.
+    pub fn with_unloading(mut self, unloading: Unloading) -> Result<Self, TerrainError> {
+        let (parameter, value) = match unloading {
+            Unloading::Plastic { contact_distance } => ("contact_distance", contact_distance),
+            Unloading::Elastic { stiffness } => ("stiffness", stiffness),
+        };
+        if !(value.is_finite() && value > 0.0) {
+            return Err(TerrainError::Unloading { parameter, value });
+        }
+        self.unloading = unloading;
+        Ok(self)
+    }
+
+    /// Puts a rigid object of `diameter` and `height` \[m\] on the ground; returns how many nodes it covers.
+    pub fn add_rigid_object(
+        &mut self,
+        centre: [f64; 2],
+        diameter: f64,
+        height: f64,
+        shape: RigidShape,
+    ) -> Result<usize, TerrainError> {
+        let (n_x, radius) = (self.grid.n_x(), diameter / 2.0);
+        let mut covered = 0;
+        for node in 0..self.grid.n_nodes() {
+            let [x, y] = self.grid.position(node % n_x, node / n_x);
+            let distance = (x - centre[0]).hypot(y - centre[1]);
+            if distance <= radius {
+                let rise = match shape {
+                    RigidShape::Stump => height,
+                    RigidShape::Rock => height * (1.0 - (distance / radius).powi(2)).sqrt(),
+                };
+                self.grid.heights_mut()[node] += rise;
+                self.kind[node] = GroundKind::Fixed;
+                covered += 1;
+            }
+        }
+        if covered == 0 {
+            let [x, y] = centre;
+            return Err(TerrainError::ObjectWithoutNode { x, y, diameter, spacing: self.grid.spacing() });
+        }
+        Ok(covered)
+    }
+
+    /// Undisturbed heights and the grid's geometry.
+    pub fn grid(&self) -> &HeightGrid {
+        &self.grid
+    }
+
+    /// Pressure–sinkage relationships.
+    pub fn field(&self) -> &PressureField {
+        &self.field
+    }
+
+    /// Behaviour on unloading.
+    pub fn unloading(&self) -> Unloading {
+        self.unloading
+    }
+
+    /// Present height of a node \[m\].
+    #[inline(always)]
+    pub fn height(&self, node: usize) -> f64 {
+        self.grid.heights()[node] - self.sinkage[node]
+    }
+
+    /// Sinkage of all nodes below the undisturbed ground \[m\].
+    pub fn sinkage(&self) -> &[f64] {
+        &self.sinkage
+    }
+
+    /// Deepest sinkage that each node has seen under load \[m\].
+    pub fn deepest(&self) -> &[f64] {
+        &self.deepest
+    }
+
+    /// How many footprints have deepened each node.
+    pub fn loadings(&self) -> &[u32] {
+        &self.loadings
+    }
+
+    /// Whether a node belongs to a rigid object.
+    #[inline(always)]
+    pub fn is_fixed(&self, node: usize) -> bool {
+        self.kind[node] == GroundKind::Fixed
+    }
+
+    /// Presses a node down to `height` \[m\] and lets it spring back where the ground is elastic.
+    pub fn stamp(&mut self, node: usize, height: f64) {
+        if self.is_fixed(node) || height >= self.height(node) {
+            return;
+        }
+        let sinkage = self.grid.heights()[node] - height;
+        self.deepest[node] = self.deepest[node].max(sinkage);
+        self.loadings[node] += 1;
+        self.sinkage[node] = match self.unloading {
+            Unloading::Plastic { .. } => sinkage,
+            Unloading::Elastic { stiffness } => {
+                let resolution = self.field.resolution();
+                let deepest = self.deepest[node];
+                let (pressure, _) =
+                    crate::pressure::interpolate(self.field.of_node(node), deepest / resolution);
+                // What was left before stays at least: reloading below the deepest point leaves no deeper rut.
+                self.sinkage[node].max(deepest - pressure / stiffness)
+            }
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pressure::{Linear, PressureArray, PressureLaw};
+
+    fn flat() -> Terrain {
+        let grid = HeightGrid::covering([0.0, 0.0], [1.0, 1.0], 0.1, |_, _| 0.0).unwrap();
+        let law = PressureLaw::Linear(Linear { stiffness: 1e6 });
+        Terrain::new(grid, PressureField::uniform(PressureArray::new(&law, 0.005, 0.5).unwrap())).unwrap()
+    }
+
+    #[test]
+    fn plastic_ground_keeps_its_rut_and_elastic_ground_springs_back() {
+        let mut plastic = flat();
+        plastic.stamp(12, -0.04);
+        plastic.stamp(12, -0.02);
+        assert_eq!((plastic.sinkage()[12], plastic.loadings()[12]), (0.04, 1));
+        let mut elastic = flat().with_unloading(Unloading::Elastic { stiffness: 4e6 }).unwrap();
+        elastic.stamp(12, -0.04);
+        assert!((elastic.sinkage()[12] - 0.03).abs() < 1e-12 && elastic.deepest()[12] == 0.04);
+        elastic.stamp(12, -0.035);
+        assert!((elastic.sinkage()[12] - 0.03).abs() < 1e-12 && elastic.deepest()[12] == 0.04);
+    }
+
+    #[test]
+    fn a_stump_rises_and_does_not_yield() {
+        let mut terrain = flat();
+        let covered = terrain.add_rigid_object([0.5, 0.5], 0.35, 0.15, RigidShape::Stump).unwrap();
+        assert!(covered == 9, "{covered}");
+        let node = 5 * 11 + 5;
+        terrain.stamp(node, -0.1);
+        assert_eq!((terrain.height(node), terrain.sinkage()[node]), (0.15, 0.0));
+        assert!(terrain.add_rigid_object([5.0, 0.5], 0.35, 0.15, RigidShape::Rock).is_err());
+    }
+}

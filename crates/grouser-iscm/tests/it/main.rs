@@ -1,0 +1,4 @@
+//! Integration tests of the soil contact model.
+
+mod restart;
+mod verification_cases;
