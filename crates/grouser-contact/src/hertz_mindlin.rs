@@ -1,13 +1,14 @@
 //! Hertz–Mindlin with Tsuji damping and Coulomb friction: P0 Eqs. (16)–(27).
 
 use crate::{
-    Contact, ContactEnergy, ContactLaw, Loading, PairProperties, Real, Response, Tail, Vector, hertz_energy,
-    hertz_stiffness, mindlin,
+    Contact, ContactEnergy, ContactLaw, Free, Loading, PairProperties, Real, Response, Tail, Vector,
+    hertz_energy, hertz_stiffness, mindlin,
 };
+use serde::{Deserialize, Serialize};
 
 /// The law of P0. `KEEP_TAIL`: the dashpot may attract ([`Tail::Keep`]). `TOTAL_DISPLACEMENT`:
 /// [`Loading::TotalDisplacement`] instead of [`Loading::Passive`].
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct HertzMindlin<const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool>;
 
 impl<const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> HertzMindlin<KEEP_TAIL, TOTAL_DISPLACEMENT> {
@@ -22,6 +23,12 @@ impl<T: Real, const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> ContactLaw<
     for HertzMindlin<KEEP_TAIL, TOTAL_DISPLACEMENT>
 {
     type Memory = Vector<T>;
+    type Rotation = Free;
+
+    #[inline(always)]
+    fn rotation(&self) -> Free {
+        Free
+    }
 
     #[inline(always)]
     fn respond(

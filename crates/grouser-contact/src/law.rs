@@ -1,6 +1,6 @@
 //! What every contact law takes and gives.
 
-use crate::{PairProperties, Real, Vector};
+use crate::{Body, Couples, PairProperties, Real, RotationLaw, Vector};
 use serde::{Serialize, de::DeserializeOwned};
 use std::fmt::Debug;
 
@@ -50,9 +50,14 @@ pub struct ContactEnergy<T> {
 }
 
 /// A law: from one contact and its memory to force and new memory. Owns no arrays; branch-free.
-pub trait ContactLaw<T: Real>: Copy + Debug + Send + Sync + 'static {
+pub trait ContactLaw<T: Real>: Copy + Debug + Send + Sync + Serialize + DeserializeOwned + 'static {
     /// What a contact remembers from step to step.
     type Memory: Memory<T>;
+    /// How grains of this law turn; [`crate::Free`] unless the law is wrapped in [`crate::Rotating`].
+    type Rotation: RotationLaw<T>;
+
+    /// How grains of this law turn.
+    fn rotation(&self) -> Self::Rotation;
 
     /// Force and memory after this step.
     fn respond(
@@ -61,40 +66,84 @@ pub trait ContactLaw<T: Real>: Copy + Debug + Send + Sync + 'static {
         pair: &PairProperties<T>,
         memory: Self::Memory,
     ) -> (Response<T>, Self::Memory);
+
+    /// Torques on the two bodies; `memory` is the one that [`ContactLaw::respond`] returned. Asked for only where
+    /// [`RotationLaw::IS_SPHERE`] is false.
+    #[inline(always)]
+    fn couples(
+        &self,
+        contact: &Contact<T>,
+        _pair: &PairProperties<T>,
+        response: &Response<T>,
+        bodies: &[Body<T, <Self::Rotation as RotationLaw<T>>::Frame>; 2],
+        memory: Self::Memory,
+    ) -> (Couples<T>, Self::Memory) {
+        (Couples::of_spheres(contact, response, bodies), memory)
+    }
 }
 
 /// Number of contacts that a kernel works on at once.
 pub const BLOCK: usize = 64;
 
-/// What a contact remembers; `()` takes no bytes and no time.
-pub trait Memory<T: Real>:
-    Copy + Default + Debug + PartialEq + Send + Sync + Serialize + DeserializeOwned + 'static
-{
-    /// The memories of [`BLOCK`] contacts, one array a component.
+/// A value that each contact of a block has, kept as one array a component; `()` takes no bytes and no time.
+pub trait Blocked<T: Real>: Copy + Default + Debug + Send + Sync + 'static {
+    /// The values of [`BLOCK`] contacts.
     type Block: Copy + Default;
-    /// The memory seen from the other body.
-    fn seen_from_the_other(self) -> Self;
-    /// Puts this memory into place `k` of a block.
+    /// Puts this value into place `k` of a block.
     fn store(self, block: &mut Self::Block, k: usize);
-    /// Puts four memories into places `k..k + 4` of a block.
+    /// Puts four values into places `k..k + 4` of a block.
     #[inline(always)]
     fn store_four(four: [Self; 4], block: &mut Self::Block, k: usize) {
-        for (n, memory) in four.into_iter().enumerate() {
-            memory.store(block, k + n);
+        for (n, value) in four.into_iter().enumerate() {
+            value.store(block, k + n);
         }
     }
-    /// The memory at place `k` of a block.
+    /// The value at place `k` of a block.
     fn load(block: &Self::Block, k: usize) -> Self;
 }
 
-impl<T: Real> Memory<T> for () {
+/// What a contact remembers.
+pub trait Memory<T: Real>: Blocked<T> + PartialEq + Serialize + DeserializeOwned {
+    /// The memory seen from the other body.
+    fn seen_from_the_other(self) -> Self;
+}
+
+impl<T: Real> Blocked<T> for () {
     type Block = ();
-    #[inline(always)]
-    fn seen_from_the_other(self) -> Self {}
     #[inline(always)]
     fn store(self, (): &mut (), _: usize) {}
     #[inline(always)]
     fn load((): &(), _: usize) -> Self {}
+}
+
+impl<T: Real> Memory<T> for () {
+    #[inline(always)]
+    fn seen_from_the_other(self) -> Self {}
+}
+
+impl<T: Real, A: Blocked<T>, B: Blocked<T>> Blocked<T> for (A, B) {
+    type Block = (A::Block, B::Block);
+    #[inline(always)]
+    fn store(self, block: &mut Self::Block, k: usize) {
+        self.0.store(&mut block.0, k);
+        self.1.store(&mut block.1, k);
+    }
+    #[inline(always)]
+    fn store_four(four: [Self; 4], block: &mut Self::Block, k: usize) {
+        A::store_four(four.map(|both| both.0), &mut block.0, k);
+        B::store_four(four.map(|both| both.1), &mut block.1, k);
+    }
+    #[inline(always)]
+    fn load(block: &Self::Block, k: usize) -> Self {
+        (A::load(&block.0, k), B::load(&block.1, k))
+    }
+}
+
+impl<T: Real, A: Memory<T>, B: Memory<T>> Memory<T> for (A, B) {
+    #[inline(always)]
+    fn seen_from_the_other(self) -> Self {
+        (self.0.seen_from_the_other(), self.1.seen_from_the_other())
+    }
 }
 
 /// One number for each contact of a block, on its own cache lines.
@@ -109,11 +158,14 @@ impl<T: Real> Default for Lanes<T> {
 }
 
 impl<T: Real> Memory<T> for Vector<T> {
-    type Block = [Lanes<T>; 3];
     #[inline(always)]
     fn seen_from_the_other(self) -> Self {
         -self
     }
+}
+
+impl<T: Real> Blocked<T> for Vector<T> {
+    type Block = [Lanes<T>; 3];
     #[inline(always)]
     fn store(self, block: &mut Self::Block, k: usize) {
         block[0].0[k] = self.x;

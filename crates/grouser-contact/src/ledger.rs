@@ -17,6 +17,9 @@ pub struct ContactLedger {
     pub tangential: f64,
     /// The part of `tangential` spent while contacts slid [J].
     pub sliding: f64,
+    /// Taken from the motion by rotation laws beyond what spheres' torques exchange with tangential springs [J]; rolling
+    /// springs hold a part of it, and tilting grains give back what they took.
+    pub turning: f64,
     /// Stored by tangential springs when the ledger began [J].
     pub tangential_elastic_at_start: f64,
 }
@@ -39,6 +42,7 @@ impl ContactLedger {
         self.normal_damping += pass.normal_damping;
         self.tangential += pass.tangential;
         self.sliding += pass.sliding;
+        self.turning += pass.turning;
     }
 
     /// A ledger that begins now, with nothing spent.
@@ -56,9 +60,10 @@ impl ContactLedger {
         self.normal_elastic + self.tangential_elastic
     }
 
-    /// Energy lost in dashpots and friction [J].
+    /// Energy lost in dashpots and friction, and spent on turning [J].
     pub fn dissipated(&self) -> f64 {
-        self.normal_damping + self.tangential + self.tangential_elastic_at_start - self.tangential_elastic
+        self.normal_damping + self.tangential + self.turning + self.tangential_elastic_at_start
+            - self.tangential_elastic
     }
 }
 
@@ -69,5 +74,6 @@ impl AddAssign for ContactLedger {
         self.normal_damping += other.normal_damping;
         self.tangential += other.tangential;
         self.sliding += other.sliding;
+        self.turning += other.turning;
     }
 }

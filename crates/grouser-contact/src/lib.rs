@@ -12,6 +12,8 @@
 //! SI units. R* = r₁r₂/(r₁+r₂), m* = m₁m₂/(m₁+m₂), 1/E* = (1−ν₁²)/E₁ + (1−ν₂²)/E₂, 1/G* = (2−ν₁)/G₁ + (2−ν₂)/G₂.
 //! P0 is M. Michael, F. Vogel, B. Peters, "DEM–FEM coupling simulations of the interactions between a tire tread and
 //! granular terrain", Comput. Methods Appl. Mech. Engrg. (2015); its misprints are listed in `docs/theory/grains.md`.
+//! P1 is R. Lichtenheldt, B. Schäfer, "Planetary rover locomotion on soft granular soils – efficient adaption of the rolling
+//! behaviour of nonspherical grains for discrete element simulations", PARTICLES 2013 (`docs/theory/tilting.md`).
 //!
 //! A glass sphere presses on another one:
 //! ```
@@ -34,6 +36,7 @@
 //! # Ok::<(), ParameterError>(())
 //! ```
 
+mod dlr;
 mod error;
 mod hertz_mindlin;
 mod law;
@@ -42,18 +45,24 @@ mod material;
 mod normal;
 mod precision;
 mod real;
+mod rotation;
 mod sphere;
 mod tangential;
 mod vector;
 
+pub use dlr::{Dlr, SlipAngles};
 pub use error::ParameterError;
 pub use hertz_mindlin::HertzMindlin;
-pub use law::{BLOCK, Contact, ContactEnergy, ContactLaw, Lanes, Memory, Response};
+pub use law::{BLOCK, Blocked, Contact, ContactEnergy, ContactLaw, Lanes, Memory, Response};
 pub use ledger::ContactLedger;
 pub use material::{Interaction, Material, PairProperties, PairTable};
 pub use normal::{Tail, damping_coefficient, hertz_energy, hertz_stiffness, restitution_with_cut_tail};
 pub use precision::{F32, F64, Mixed, Precision};
 pub use real::Real;
+pub use rotation::{
+    ArmNormalisation, Body, ConstantRolling, Couples, ElasticPlasticRolling, Frame, Free, GrainInertia,
+    GrainShape, PlaneShape, Quaternion, Rotating, RotationLaw, Tilting, TiltingSettings,
+};
 pub use sphere::{Load, Sphere};
 pub use tangential::{Loading, Tangential, mindlin};
 pub use vector::Vector;

@@ -1,12 +1,14 @@
 //! A bed of grains: everything that one step needs, and the step.
 
 use crate::force_pass::{InstructionSet, PassInput};
-use crate::integrate::{Motion, Pace, Stages, turn};
+use crate::integrate::{Motion, Pace, Stages, Turning};
 use crate::neighbours::Neighbours;
 use crate::shared_grains::SharedGrains;
 use crate::sweep::sweep;
 use crate::{BedEnergy, BedError, Domain, Failure, Grains, Plane, Rotation};
-use grouser_contact::{ContactLaw, ContactLedger, F64, PairTable, Precision, Real, Sphere};
+use grouser_contact::{
+    ContactLaw, ContactLedger, F64, Frame, PairTable, Precision, Real, RotationLaw, Sphere,
+};
 use grouser_geometry::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +32,7 @@ pub struct BedSettings {
 
 /// Grains, their neighbours and the law between them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound(serialize = "L: ContactLaw<P::Real>", deserialize = "L: ContactLaw<P::Real> + Default"))]
+#[serde(bound(serialize = "L: ContactLaw<P::Real>", deserialize = "L: ContactLaw<P::Real>"))]
 pub struct Bed<L: ContactLaw<P::Real>, P: Precision = F64> {
     grains: Grains<P>,
     settings: BedSettings,
@@ -38,8 +40,9 @@ pub struct Bed<L: ContactLaw<P::Real>, P: Precision = F64> {
     neighbours: Neighbours<P, L::Memory>,
     ledger: ContactLedger,
     is_too_deep: bool,
-    #[serde(skip)]
     law: L,
+    /// Coefficient of the damping of absolute velocities [N·s/m], and what it has taken so far [J].
+    background: [f64; 2],
     #[serde(skip, default = "InstructionSet::detect")]
     set: InstructionSet,
 }
@@ -57,11 +60,25 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         law: L,
     ) -> Result<Self, BedError> {
         BedError::check(&spheres, &settings, table.n_materials())?;
-        let grains = Grains::new(spheres);
+        let mut grains = Grains::new(spheres);
+        grains.inertia_ratios = law.rotation().inertia_ratios();
+        if <L::Rotation as RotationLaw<P::Real>>::Frame::IS_TRACKED {
+            grains.track_orientations();
+        }
         let neighbours = Neighbours::new(grains.smallest_radius);
         let ledger = ContactLedger::default();
         let set = InstructionSet::detect();
-        Ok(Self { grains, settings, table, neighbours, ledger, is_too_deep: false, law, set })
+        Ok(Self {
+            grains,
+            settings,
+            table,
+            neighbours,
+            ledger,
+            is_too_deep: false,
+            law,
+            background: [0.0; 2],
+            set,
+        })
     }
 
     /// One step of `time_step` [s] without tools.
@@ -129,7 +146,13 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     }
 
     fn motion(&self, time_step: f64, stages: Stages) -> Motion<P::Real> {
-        Motion::new(time_step, self.settings.gravity, self.settings.rotation, stages)
+        Motion::new(
+            time_step,
+            self.settings.gravity,
+            self.settings.rotation,
+            stages,
+            Turning::new(self.grains.inertia_ratios),
+        )
     }
 
     fn sweep(&mut self, time_step: f64, stages: Stages) -> Pace {
@@ -157,9 +180,8 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         pace
     }
 
-    /// What a predictor leaves to be done: orientations, the health of the motion, and the lists.
+    /// What a predictor leaves to be done: the health of the motion, the lists, and background damping.
     fn look_after(&mut self, pace: Pace, time_step: f64) -> Result<(), Failure> {
-        turn(&mut self.grains, time_step);
         if !pace.is_finite {
             return Err(self.first_non_finite());
         }
@@ -172,7 +194,24 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         if self.neighbours.are_too_old(&self.grains, &self.settings.domain, travel) {
             self.renew_lists()?;
         }
+        self.damp_background(time_step);
         Ok(())
+    }
+
+    /// Damps the absolute velocity of every grain with `coefficient` k_h [N·s/m], as P1 does for stability; zero is off.
+    pub fn set_background_damping(&mut self, coefficient: f64) {
+        self.background[0] = coefficient;
+    }
+
+    fn damp_background(&mut self, time_step: f64) {
+        let [coefficient, taken] = &mut self.background;
+        if *coefficient == 0.0 {
+            return;
+        }
+        for (sphere, load) in self.grains.spheres.iter().zip(&mut self.grains.loads) {
+            load.force -= sphere.velocity * P::Real::from_f64(*coefficient);
+            *taken += *coefficient * sphere.velocity.norm_squared().to_f64() * time_step;
+        }
     }
 
     /// The grains.
@@ -257,7 +296,13 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
             let height = crate::cell_grid::to_f64(sphere).dot(&self.settings.gravity);
             gravitational -= sphere.mass.to_f64() * height;
         }
-        BedEnergy { kinetic, rotational, gravitational, contacts: self.ledger }
+        BedEnergy {
+            kinetic,
+            rotational,
+            gravitational,
+            contacts: self.ledger,
+            background_damping: self.background[1],
+        }
     }
 
     /// Sorts the grains and makes the lists anew.

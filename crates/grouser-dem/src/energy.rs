@@ -14,6 +14,8 @@ pub struct BedEnergy {
     pub gravitational: f64,
     /// Contacts among grains and with planes.
     pub contacts: ContactLedger,
+    /// Lost to background damping since the bed was made [J].
+    pub background_damping: f64,
 }
 
 impl BedEnergy {

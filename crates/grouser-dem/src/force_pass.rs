@@ -11,7 +11,8 @@ use crate::quads;
 use crate::shared_grains::SharedGrains;
 use crate::slab::{Pair, Slab, SlabSums};
 use grouser_contact::{
-    BLOCK, Contact, ContactLaw, ContactLedger, F64, Lanes, Memory, PairTable, Precision, Real, Vector,
+    BLOCK, Blocked, Body, Contact, ContactLaw, ContactLedger, F64, Frame, Lanes, PairTable, Precision, Real,
+    RotationLaw, Vector,
 };
 use std::any::TypeId;
 
@@ -27,8 +28,16 @@ pub(crate) struct PassInput<'a, P: Precision, L> {
     pub set: InstructionSet,
 }
 
+/// What law `L` asks to know about orientations.
+pub(crate) type FrameOf<T, L> = <<L as ContactLaw<T>>::Rotation as RotationLaw<T>>::Frame;
+
+/// Grains turn as spheres do; known when compiled.
+const fn turns_as_sphere<T: Real, L: ContactLaw<T>>() -> bool {
+    <L::Rotation as RotationLaw<T>>::IS_SPHERE
+}
+
 /// One component for each contact of a block. Inputs are overwritten by outputs where both have three components.
-struct Block<T: Real, M: Memory<T>> {
+struct Block<T: Real, L: ContactLaw<T>> {
     /// Centre of the second body to centre of the first [m]; after the law the force on the first [N].
     difference: [Lanes<T>; 3],
     /// (r₁ + r₂)² − distance² [m²], taken in the precision of coordinates.
@@ -37,17 +46,20 @@ struct Block<T: Real, M: Memory<T>> {
     mass: [Lanes<T>; 2],
     /// Velocity of the first centre against the second [m/s]; after the law n × F [N].
     velocity: [Lanes<T>; 3],
+    /// Spins [rad/s]; after a law that does not turn grains as spheres the torques [N·m].
     spin: [[Lanes<T>; 3]; 2],
+    /// Orientations, where the law asks for them.
+    frame: [<FrameOf<T, L> as Blocked<T>>::Block; 2],
     /// Distance of the contact point from each centre [m] (output).
     arm: [Lanes<T>; 2],
-    memory: M::Block,
+    memory: <L::Memory as Blocked<T>>::Block,
     normal_modulus: Lanes<T>,
     tangential_modulus: Lanes<T>,
     damping: Lanes<T>,
     tangential_damping_ratio: Lanes<T>,
     friction: Lanes<T>,
     /// Sums over all blocks of a pass, one lane each.
-    ledger: [Lanes<T>; 5],
+    ledger: [Lanes<T>; 6],
     /// How far overlaps exceed the largest one that is allowed [m], one lane each.
     depth: Lanes<T>,
 }
@@ -185,7 +197,7 @@ fn pass<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool, const LEDGE
     slab: &mut Slab<P::Real, L::Memory>,
     input: &PassInput<P, L>,
 ) -> SlabSums {
-    let mut block = Block::<P::Real, L::Memory>::new(input.table);
+    let mut block = Block::<P::Real, L>::new(input.table);
     let mut waiting = Waiting { places: [0; 2 * BLOCK + 4], n: 0 };
     for word in 0..slab.touched.len() {
         let from = word * 64;
@@ -210,12 +222,12 @@ fn pass<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool, const LEDGE
         }
         slab.touched[word] = touching;
         if waiting.n >= BLOCK {
-            block.work::<P, L, HAS_QUADS, LEDGER>(&waiting.places[..BLOCK], slab, input);
+            block.work::<P, HAS_QUADS, LEDGER>(&waiting.places[..BLOCK], slab, input);
             waiting.places.copy_within(BLOCK..waiting.n, 0);
             waiting.n -= BLOCK;
         }
     }
-    block.work::<P, L, HAS_QUADS, LEDGER>(&waiting.places[..waiting.n], slab, input);
+    block.work::<P, HAS_QUADS, LEDGER>(&waiting.places[..waiting.n], slab, input);
     block.totals(input.time_step)
 }
 
@@ -235,7 +247,7 @@ fn quad_places<'a, P: Precision, L>(input: &'a PassInput<P, L>) -> quads::Places
     quads::Places { spheres: input.grains.spheres().cast(), shifts }
 }
 
-impl<T: Real, M: Memory<T>> Block<T, M> {
+impl<T: Real, L: ContactLaw<T>> Block<T, L> {
     fn new(table: &PairTable<T>) -> Self {
         let mut block = Self {
             difference: Default::default(),
@@ -244,6 +256,7 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
             mass: [Lanes([T::ONE; BLOCK]); 2],
             velocity: Default::default(),
             spin: Default::default(),
+            frame: Default::default(),
             arm: Default::default(),
             memory: Default::default(),
             normal_modulus: Default::default(),
@@ -273,30 +286,25 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
     }
 
     #[inline(always)]
-    fn work<
-        P: Precision<Real = T>,
-        L: ContactLaw<T, Memory = M>,
-        const HAS_QUADS: bool,
-        const LEDGER: bool,
-    >(
+    fn work<P: Precision<Real = T>, const HAS_QUADS: bool, const LEDGER: bool>(
         &mut self,
         places: &[u32],
-        slab: &mut Slab<T, M>,
+        slab: &mut Slab<T, L::Memory>,
         input: &PassInput<P, L>,
     ) {
-        self.gather::<P, L, HAS_QUADS>(places, slab, input);
+        self.gather::<P, HAS_QUADS>(places, slab, input);
         // Groups of 16 lanes: a constant trip count that every vector width divides.
         for group in 0..places.len().div_ceil(16) {
-            self.respond::<L, LEDGER>(group * 16, places.len(), &input.law, input.time_step);
+            self.respond::<LEDGER>(group * 16, places.len(), &input.law, input.time_step);
         }
         self.scatter::<P, HAS_QUADS>(places, slab, input.grains);
     }
 
     #[inline(always)]
-    fn gather<P: Precision<Real = T>, L, const HAS_QUADS: bool>(
+    fn gather<P: Precision<Real = T>, const HAS_QUADS: bool>(
         &mut self,
         places: &[u32],
-        slab: &Slab<T, M>,
+        slab: &Slab<T, L::Memory>,
         input: &PassInput<P, L>,
     ) {
         for (group, four) in places.chunks(4).enumerate() {
@@ -322,7 +330,15 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
             }
             #[cfg(not(target_arch = "x86_64"))]
             pairs.into_iter().enumerate().for_each(|(n, pair)| self.gather_one(pair, input, 4 * group + n));
-            M::store_four(places.map(|place| slab.memory[place as usize]), &mut self.memory, group * 4);
+            let memories = places.map(|place| slab.memory[place as usize]);
+            L::Memory::store_four(memories, &mut self.memory, group * 4);
+            if FrameOf::<T, L>::IS_TRACKED {
+                for body in 0..2 {
+                    let turned = pairs.map(|pair| input.grains.quaternion(pair.grains()[body]));
+                    let frames = turned.map(FrameOf::<T, L>::from_quaternion);
+                    <FrameOf<T, L>>::store_four(frames, &mut self.frame[body], group * 4);
+                }
+            }
         }
         if input.table.n_materials() > 1 {
             for (k, &place) in places.iter().enumerate() {
@@ -338,7 +354,7 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
     }
 
     #[inline(always)]
-    fn gather_one<P: Precision<Real = T>, L>(&mut self, pair: Pair, input: &PassInput<P, L>, k: usize) {
+    fn gather_one<P: Precision<Real = T>>(&mut self, pair: Pair, input: &PassInput<P, L>, k: usize) {
         let [first, second] = pair.grains().map(|grain| input.grains.sphere(grain));
         let narrow = |c: P::Coordinate| T::from_f64(c.to_f64());
         let (difference, room) = relative_place(pair, input);
@@ -361,13 +377,7 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
 
     /// The contact law on lanes `from..from + 16`, of which those below `used` hold contacts.
     #[inline(always)]
-    fn respond<L: ContactLaw<T, Memory = M>, const LEDGER: bool>(
-        &mut self,
-        from: usize,
-        used: usize,
-        law: &L,
-        time_step: T,
-    ) {
+    fn respond<const LEDGER: bool>(&mut self, from: usize, used: usize, law: &L, time_step: T) {
         let lanes =
             |group: &[Lanes<T>; 3], k: usize| Vector::new(group[0].0[k], group[1].0[k], group[2].0[k]);
         for k in from..from + 16 {
@@ -404,8 +414,30 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
                 tangential_damping_ratio: self.tangential_damping_ratio.0[k],
                 friction: self.friction.0[k],
             };
-            let (response, memory) = law.respond(&contact, &pair, M::load(&self.memory, k));
-            memory.store(&mut self.memory, k);
+            let (response, memory) = law.respond(&contact, &pair, L::Memory::load(&self.memory, k));
+            // Lanes beyond the contacts of this block hold leftovers, whose results nobody may see.
+            let or_nothing = |value: T| if k < used { value } else { T::ZERO };
+            if turns_as_sphere::<T, L>() {
+                memory.store(&mut self.memory, k);
+            } else {
+                let body = |b: usize, spin| Body {
+                    arm: arms[b],
+                    spin,
+                    inverse_moment: T::ONE / (masses[b] * radii[b] * radii[b]),
+                    frame: <FrameOf<T, L>>::load(&self.frame[b], k),
+                };
+                let bodies = [body(0, spin_first), body(1, spin_second)];
+                let (couples, memory) = law.couples(&contact, &pair, &response, &bodies, memory);
+                memory.store(&mut self.memory, k);
+                for (lanes, torque) in self.spin.iter_mut().zip(couples.torques) {
+                    for (lane, component) in lanes.iter_mut().zip(torque.to_array()) {
+                        lane.0[k] = component;
+                    }
+                }
+                if LEDGER {
+                    self.ledger[5].0[k] += or_nothing(couples.spent);
+                }
+            }
             let force = normal * response.normal_force + response.tangential_force;
             let couple = normal.cross(response.tangential_force);
             let (force, couple) = (force.to_array(), couple.to_array());
@@ -415,8 +447,6 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
             }
             self.arm[0].0[k] = arms[0];
             self.arm[1].0[k] = arms[1];
-            // Lanes beyond the contacts of this block hold leftovers, whose results nobody may see.
-            let or_nothing = |value: T| if k < used { value } else { T::ZERO };
             let depth = overlap - T::from_f64(LARGEST_OVERLAP) * radii[0].min(radii[1]);
             self.depth.0[k] = or_nothing(depth).max(self.depth.0[k]);
             if LEDGER {
@@ -439,11 +469,21 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
     fn scatter<P: Precision<Real = T>, const HAS_QUADS: bool>(
         &mut self,
         places: &[u32],
-        slab: &mut Slab<T, M>,
+        slab: &mut Slab<T, L::Memory>,
         grains: SharedGrains<P>,
     ) {
         for (k, &place) in places.iter().enumerate() {
-            slab.memory[place as usize] = M::load(&self.memory, k);
+            slab.memory[place as usize] = L::Memory::load(&self.memory, k);
+        }
+        if !turns_as_sphere::<T, L>() {
+            for (k, &place) in places.iter().enumerate() {
+                let [i, j] = slab.pairs[place as usize].grains();
+                let at = |lanes: &[Lanes<T>; 3]| lanes.each_ref().map(|lane| lane.0[k]).into();
+                let force: Vector<T> = at(&self.difference);
+                grains.add_load(i, force, at(&self.spin[0]));
+                grains.add_load(j, -force, at(&self.spin[1]));
+            }
+            return;
         }
         #[cfg(target_arch = "x86_64")]
         if HAS_QUADS && is_double::<P>() {
@@ -474,13 +514,14 @@ impl<T: Real, M: Memory<T>> Block<T, M> {
     fn totals(&self, time_step: T) -> SlabSums {
         let total = |lanes: &Lanes<T>| lanes.0.iter().map(|value| value.to_f64()).sum::<f64>();
         let dt = time_step.to_f64();
-        let [normal_elastic, tangential_elastic, normal_damping, tangential, sliding] = &self.ledger;
+        let [normal_elastic, tangential_elastic, normal_damping, tangential, sliding, turning] = &self.ledger;
         let ledger = ContactLedger {
             normal_elastic: total(normal_elastic),
             tangential_elastic: total(tangential_elastic),
             normal_damping: total(normal_damping) * dt,
             tangential: total(tangential) * dt,
             sliding: total(sliding) * dt,
+            turning: total(turning) * dt,
             ..Default::default()
         };
         let is_too_deep = self.depth.0.iter().any(|&depth| depth > T::ZERO);

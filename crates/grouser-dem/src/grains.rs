@@ -2,8 +2,11 @@
 
 use crate::Domain;
 use grouser_contact::{Load, Precision, Real, Sphere, Vector};
+use grouser_geometry::nalgebra::Quaternion;
 use grouser_geometry::{Orientation, Vec3};
+use rand::{RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// What the rotation of grains is allowed to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -27,10 +30,13 @@ pub struct Grains<P: Precision> {
     pub loads: Vec<Load<P::Real>>,
     /// Orientation of each grain's body frame, when the scene asks for it.
     pub orientations: Option<Vec<Orientation>>,
-    /// Linear and angular acceleration at the end of the last step [m/s², rad/s²].
+    /// Linear and angular acceleration at the end of the last step [m/s², rad/s²]; the torque [N·m] in place of the latter
+    /// where the inertia is not spherical.
     pub(crate) accelerations: Vec<[Vector<P::Real>; 2]>,
     /// Upper bound of the speed of any grain in the present step [m/s].
     pub(crate) fastest: f64,
+    /// Principal moments of inertia over m r² [-].
+    pub(crate) inertia_ratios: [f64; 3],
     pub(crate) smallest_radius: f64,
     pub(crate) largest_radius: f64,
 }
@@ -49,6 +55,7 @@ impl<P: Precision> Grains<P> {
             orientations: None,
             accelerations: vec![[Vector::ZERO; 2]; n],
             fastest: 0.0,
+            inertia_ratios: [0.4; 3],
             smallest_radius,
             largest_radius,
         }
@@ -75,6 +82,41 @@ impl<P: Precision> Grains<P> {
         self.orientations.get_or_insert_with(|| vec![Orientation::identity(); n]);
     }
 
+    /// Turns every grain at random, each direction as likely as any other; the same `seed` gives the same orientations
+    /// for the same permanent numbers. Keeps orientations from now on.
+    pub fn turn_randomly(&mut self, seed: u64) {
+        self.track_orientations();
+        let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(seed);
+        // K. Shoemake, Uniform random rotations, Graphics Gems III (1992).
+        let drawn: Vec<Orientation> = (0..self.len())
+            .map(|_| {
+                let [u, v, w]: [f64; 3] = std::array::from_fn(|_| random.random());
+                let ((s1, c1), (s2, c2)) = ((TAU * v).sin_cos(), (TAU * w).sin_cos());
+                let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
+                Orientation::new_normalize(Quaternion::new(b * c2, a * s1, a * c1, b * s2))
+            })
+            .collect();
+        for (orientation, &id) in self.orientations.iter_mut().flatten().zip(&self.ids) {
+            *orientation = drawn[id as usize];
+        }
+    }
+
+    /// Angular momentum of grain at place `index` about its centre [kg·m²/s].
+    pub fn spin_momentum(&self, index: usize) -> Vec3 {
+        let sphere = &self.spheres[index];
+        let spin = sphere.spin.cast::<f64>();
+        let spin = Vec3::new(spin.x, spin.y, spin.z);
+        let moment = sphere.mass.to_f64() * sphere.radius.to_f64().powi(2);
+        let ratios = Vec3::from(self.inertia_ratios);
+        match &self.orientations {
+            None => spin * (moment * ratios.x),
+            Some(kept) => {
+                let body = kept[index].inverse_transform_vector(&spin);
+                kept[index].transform_vector(&body.component_mul(&ratios)) * moment
+            }
+        }
+    }
+
     /// Puts grain `order[k]` at place k.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
         fn sorted<V: Copy>(values: &mut Vec<V>, order: &[u32]) {
@@ -99,9 +141,10 @@ impl<P: Precision> Grains<P> {
     /// Translational and rotational kinetic energy [J].
     pub fn kinetic_energy(&self) -> [f64; 2] {
         let (mut linear, mut angular) = (0.0, 0.0);
-        for sphere in &self.spheres {
+        for (index, sphere) in self.spheres.iter().enumerate() {
             linear += 0.5 * sphere.mass.to_f64() * sphere.velocity.norm_squared().to_f64();
-            angular += 0.5 * sphere.inertia().to_f64() * sphere.spin.norm_squared().to_f64();
+            let spin = sphere.spin.cast::<f64>();
+            angular += 0.5 * self.spin_momentum(index).dot(&Vec3::new(spin.x, spin.y, spin.z));
         }
         [linear, angular]
     }

@@ -6,7 +6,7 @@
 use crate::grains::{Grains, Rotation};
 use crate::shared_grains::SharedGrains;
 use grouser_contact::{Load, Precision, Real, Sphere, Vector};
-use grouser_geometry::{Orientation, Vec3};
+use grouser_geometry::Vec3;
 use std::ops::Range;
 
 /// Fastest grain seen by a predictor, and whether every number was finite.
@@ -38,6 +38,8 @@ pub(crate) enum Stages {
     CorrectAndPredict,
 }
 
+pub(crate) use crate::turning::Turning;
+
 /// The motion of grains between two force passes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion<T> {
@@ -45,13 +47,14 @@ pub(crate) struct Motion<T> {
     pub gravity: Vector<T>,
     pub rotation: Rotation,
     pub stages: Stages,
+    pub turning: Turning,
 }
 
 impl<T: Real> Motion<T> {
     /// Motion with a step [s] under gravity [m/s²].
-    pub fn new(time_step: f64, gravity: Vec3, rotation: Rotation, stages: Stages) -> Self {
+    pub fn new(time_step: f64, gravity: Vec3, rotation: Rotation, stages: Stages, turning: Turning) -> Self {
         let gravity = Vector::new(gravity.x, gravity.y, gravity.z).cast();
-        Self { time_step: T::from_f64(time_step), gravity, rotation, stages }
+        Self { time_step: T::from_f64(time_step), gravity, rotation, stages, turning }
     }
 
     /// The stages that follow the force pass, for a range of grains.
@@ -59,8 +62,18 @@ impl<T: Real> Motion<T> {
         if self.stages == Stages::None {
             return Pace::STILL;
         }
+        let orientations = grains.orientations(range.clone());
         let (spheres, loads, accelerations) = grains.range(range);
         let mut watch = Watch::default();
+        if let Some(orientations) = orientations {
+            for (index, orientation) in orientations.iter_mut().enumerate() {
+                let (sphere, load, acceleration) =
+                    (&mut spheres[index], &mut loads[index], &mut accelerations[index]);
+                self.correct_turned(sphere, load, acceleration, orientation);
+                self.predict_turned(sphere, load, acceleration, orientation, &mut watch);
+            }
+            return watch.pace();
+        }
         for ((sphere, load), acceleration) in spheres.iter_mut().zip(loads).zip(accelerations) {
             self.correct(sphere, load, acceleration);
             self.predict(sphere, load, acceleration, &mut watch);
@@ -70,7 +83,18 @@ impl<T: Real> Motion<T> {
 
     /// Corrects all grains.
     pub fn correct_all<P: Precision<Real = T>>(&self, grains: &mut Grains<P>) {
-        let Grains { spheres, loads, accelerations, .. } = grains;
+        let Grains { spheres, loads, accelerations, orientations, .. } = grains;
+        if let Some(orientations) = orientations {
+            for (index, orientation) in orientations.iter().enumerate() {
+                self.correct_turned(
+                    &mut spheres[index],
+                    &loads[index],
+                    &mut accelerations[index],
+                    orientation,
+                );
+            }
+            return;
+        }
         for ((sphere, load), acceleration) in spheres.iter_mut().zip(loads).zip(accelerations) {
             self.correct(sphere, load, acceleration);
         }
@@ -78,8 +102,16 @@ impl<T: Real> Motion<T> {
 
     /// Predicts all grains and clears their loads.
     pub fn predict_all<P: Precision<Real = T>>(&self, grains: &mut Grains<P>) -> Pace {
-        let Grains { spheres, loads, accelerations, .. } = grains;
+        let Grains { spheres, loads, accelerations, orientations, .. } = grains;
         let mut watch = Watch::default();
+        if let Some(orientations) = orientations {
+            for (index, orientation) in orientations.iter_mut().enumerate() {
+                let (sphere, load, acceleration) =
+                    (&mut spheres[index], &mut loads[index], &mut accelerations[index]);
+                self.predict_turned(sphere, load, acceleration, orientation, &mut watch);
+            }
+            return watch.pace();
+        }
         for ((sphere, load), acceleration) in spheres.iter_mut().zip(loads).zip(accelerations) {
             self.predict(sphere, load, acceleration, &mut watch);
         }
@@ -127,27 +159,16 @@ impl<T: Real> Motion<T> {
     }
 }
 
-/// Turns the orientations by one step of the present spins.
-pub(crate) fn turn<P: Precision>(grains: &mut Grains<P>, time_step: f64) {
-    let Some(orientations) = &mut grains.orientations else { return };
-    for (orientation, sphere) in orientations.iter_mut().zip(&grains.spheres) {
-        let spin = sphere.spin.cast::<f64>();
-        let turn = Orientation::from_scaled_axis(Vec3::new(spin.x, spin.y, spin.z) * time_step);
-        *orientation = turn * *orientation;
-        orientation.renormalize_fast();
-    }
-}
-
 /// Keeps an eye on the fastest grain; 0 × x is NaN for every x that is not finite.
 #[derive(Default)]
-struct Watch<T> {
+pub(crate) struct Watch<T> {
     fastest_squared: T,
     checksum: T,
 }
 
 impl<T: Real> Watch<T> {
     #[inline(always)]
-    fn see(&mut self, speed_squared: T, spin_squared: T) {
+    pub fn see(&mut self, speed_squared: T, spin_squared: T) {
         self.fastest_squared = speed_squared.max(self.fastest_squared);
         self.checksum += (speed_squared + spin_squared) * T::ZERO;
     }

@@ -54,6 +54,7 @@ mod shared_grains;
 mod slab;
 mod sweep;
 mod time_step;
+mod turning;
 
 pub use bed::{Bed, BedSettings, LARGEST_OVERLAP};
 pub use domain::Domain;

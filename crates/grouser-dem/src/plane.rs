@@ -2,9 +2,11 @@
 
 use crate::LARGEST_OVERLAP;
 use crate::cell_grid::to_f64;
-use crate::force_pass::PassInput;
+use crate::force_pass::{FrameOf, PassInput};
 use crate::slab::SlabSums;
-use grouser_contact::{Contact, ContactLaw, ContactLedger, Memory, Precision, Real, Sphere, Vector};
+use grouser_contact::{
+    Body, Contact, ContactLaw, ContactLedger, Frame, Memory, Precision, Real, RotationLaw, Sphere, Vector,
+};
 use grouser_geometry::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -96,9 +98,29 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
             };
             let pair = input.table.pair(sphere.material, plane.material);
             let (response, remembered) = input.law.respond(&contact, pair, *memory);
-            *memory = remembered;
             let force = normal * response.normal_force + response.tangential_force;
-            input.grains.add_load(grain, force, normal.cross(response.tangential_force) * -arm);
+            let mut torque = normal.cross(response.tangential_force) * -arm;
+            *memory = remembered;
+            if !<L::Rotation as RotationLaw<T>>::IS_SPHERE {
+                let mut frame = <FrameOf<T, L>>::default();
+                if <FrameOf<T, L>>::IS_TRACKED {
+                    frame = <FrameOf<T, L>>::from_quaternion(input.grains.quaternion(grain));
+                }
+                let inverse_moment =
+                    T::ONE / (sphere.mass * contact.effective_radius * contact.effective_radius);
+                let of_grain = Body { arm, spin: sphere.spin, inverse_moment, frame };
+                let at_rest = Body {
+                    arm: T::ZERO,
+                    spin: Vector::ZERO,
+                    inverse_moment: T::ZERO,
+                    frame: Default::default(),
+                };
+                let (couples, remembered) =
+                    input.law.couples(&contact, pair, &response, &[of_grain, at_rest], remembered);
+                (torque, *memory) = (couples.torques[0], remembered);
+                ledger.turning += couples.spent.to_f64() * dt;
+            }
+            input.grains.add_load(grain, force, torque);
             total -= force.cast();
             ledger.add(&response.energy, dt);
         }

@@ -2,6 +2,7 @@
 
 use crate::Grains;
 use grouser_contact::{Load, Precision, Sphere, Vector};
+use grouser_geometry::Orientation;
 
 /// The arrays of a bed, seen by all threads of a sweep. Which grains a thread may touch is the matter of
 /// [`crate::sweep`]; this type only makes the promise short to write.
@@ -10,6 +11,8 @@ pub(crate) struct SharedGrains<P: Precision> {
     spheres: *mut Sphere<P>,
     loads: *mut Load<P::Real>,
     accelerations: *mut [Vector<P::Real>; 2],
+    /// Null where no orientations are kept.
+    orientations: *mut Orientation,
     n: usize,
 }
 
@@ -23,10 +26,13 @@ impl<P: Precision> SharedGrains<P> {
     pub fn new(grains: &mut Grains<P>) -> Self {
         let n = grains.spheres.len();
         assert!(grains.loads.len() == n && grains.accelerations.len() == n);
+        let orientations = grains.orientations.as_mut();
+        assert!(orientations.as_ref().is_none_or(|kept| kept.len() == n));
         Self {
             spheres: grains.spheres.as_mut_ptr(),
             loads: grains.loads.as_mut_ptr(),
             accelerations: grains.accelerations.as_mut_ptr(),
+            orientations: orientations.map_or(std::ptr::null_mut(), |kept| kept.as_mut_ptr()),
             n,
         }
     }
@@ -57,6 +63,25 @@ impl<P: Precision> SharedGrains<P> {
     #[inline(always)]
     pub fn loads(&self) -> *mut Load<P::Real> {
         self.loads
+    }
+
+    /// Orientation of one grain as (i, j, k, real part). Laws that ask for it make the bed keep orientations.
+    #[inline(always)]
+    pub fn quaternion(&self, grain: u32) -> [f64; 4] {
+        debug_assert!((grain as usize) < self.n && !self.orientations.is_null());
+        // SAFETY: as for spheres; `Bed::new` and deserialisation keep orientations for laws that ask for them.
+        let orientation: &Orientation = unsafe { &*self.orientations.add(grain as usize) };
+        orientation.coords.into()
+    }
+
+    /// Orientations of a range, where they are kept.
+    #[expect(clippy::mut_from_ref, reason = "exclusive access to the range is the promise of the sweep")]
+    pub fn orientations(&self, range: std::ops::Range<u32>) -> Option<&mut [Orientation]> {
+        let (from, n) = (range.start as usize, range.len());
+        assert!(from + n <= self.n);
+        // SAFETY: as for [`SharedGrains::range`].
+        (!self.orientations.is_null())
+            .then(|| unsafe { std::slice::from_raw_parts_mut(self.orientations.add(from), n) })
     }
 
     /// Everything about the grains of a range.

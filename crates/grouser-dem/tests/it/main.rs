@@ -5,6 +5,7 @@ mod determinism;
 mod failures;
 mod impact;
 mod reference_kernel;
+mod rotation;
 
 use grouser_contact::*;
 use grouser_dem::*;

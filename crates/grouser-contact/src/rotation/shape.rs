@@ -1,0 +1,144 @@
+//! Shapes of angular grains for the tilting law: P1 Table 1, by name and by parameters.
+
+use crate::ParameterError;
+use serde::{Deserialize, Serialize};
+
+/// The figure that stands for the grain in one rotation plane.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum PlaneShape {
+    /// A rectangle: short over long side A = a/b, in [0.05, 1], and a factor s on both arms, in [0.1, 1]. The long side lies
+    /// along the body axis of the lower number.
+    Rectangle {
+        /// A [-].
+        aspect_ratio: f64,
+        /// s [-].
+        scale: f64,
+    },
+    /// A circle: free rotation, with a factor s on the arm.
+    Circle {
+        /// s [-].
+        scale: f64,
+    },
+}
+
+/// A grain: one figure in each of the planes normal to the body axes 1, 2, 3.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum GrainShape {
+    /// A = 1 in every plane.
+    Cube,
+    /// The same A in every plane: the shape of P1's parameter studies.
+    Angular {
+        /// A [-].
+        aspect_ratio: f64,
+    },
+    /// Long along body axis 1: A₁ = 1, A₂ = A₃ = A, s₁ = A.
+    Bar {
+        /// A [-].
+        aspect_ratio: f64,
+    },
+    /// Thin along body axis 3: A₁ = A₂ = A, A₃ = 1.
+    Plate {
+        /// A [-].
+        aspect_ratio: f64,
+    },
+    /// Thin along body axis 3 and round about it: A₁ = A₂ = A, a circle in plane 3 (P1 leaves A₃ and s₃ open).
+    Disc {
+        /// A [-].
+        aspect_ratio: f64,
+    },
+    /// Any three figures.
+    Planes([PlaneShape; 3]),
+}
+
+impl GrainShape {
+    /// The figures in planes 1, 2, 3.
+    pub fn planes(&self) -> [PlaneShape; 3] {
+        let rectangle = |aspect_ratio| PlaneShape::Rectangle { aspect_ratio, scale: 1.0 };
+        match *self {
+            Self::Cube => [rectangle(1.0); 3],
+            Self::Angular { aspect_ratio } => [rectangle(aspect_ratio); 3],
+            Self::Bar { aspect_ratio: a } => {
+                [PlaneShape::Rectangle { aspect_ratio: 1.0, scale: a }, rectangle(a), rectangle(a)]
+            }
+            Self::Plate { aspect_ratio: a } => [rectangle(a), rectangle(a), rectangle(1.0)],
+            Self::Disc { aspect_ratio: a } => [rectangle(a), rectangle(a), PlaneShape::Circle { scale: 1.0 }],
+            Self::Planes(planes) => planes,
+        }
+    }
+}
+
+/// What the half diagonal d of a rectangle is; P1 does not print it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ArmNormalisation {
+    /// d = r: the rectangle is inscribed in the sphere, no arm is longer than r.
+    #[default]
+    Inscribed,
+    /// d = r/cos γ: half the long side is r.
+    LongSide,
+}
+
+/// Moment of inertia about a body axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum GrainInertia {
+    /// The inscribed rectangle, m r²/3 for every A.
+    #[default]
+    Inscribed,
+    /// P1 Eq. (15), a thin rod of length r/A: m (r/A)²/12. At A = 1 it is 4.8 times below a solid sphere.
+    ThinRod,
+}
+
+/// All choices of the tilting law.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TiltingSettings {
+    /// The grain.
+    pub shape: GrainShape,
+    /// Length of the arms.
+    pub arms: ArmNormalisation,
+    /// Moments of inertia; a circle has that of the solid sphere.
+    pub inertia: GrainInertia,
+    /// Angle within which the normal arm passes from one corner to the other [rad], in [0, 0.2]; 0 is the jump itself.
+    pub smoothing_rad: f64,
+}
+
+/// 0.29°: a grain on an incline topples where the closed form says, within half a degree.
+const DEFAULT_SMOOTHING: f64 = 5e-3;
+
+impl TiltingSettings {
+    /// Inscribed arms and inertia, and a passage between corners within 0.005 rad (0.29°).
+    pub fn of(shape: GrainShape) -> Self {
+        Self {
+            shape,
+            arms: ArmNormalisation::Inscribed,
+            inertia: GrainInertia::Inscribed,
+            smoothing_rad: DEFAULT_SMOOTHING,
+        }
+    }
+
+    /// Refuses constants outside the range that the law has been tested on.
+    ///
+    /// # Errors
+    /// Names the constant, its range and the reason.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        for plane in self.shape.planes() {
+            let scale = match plane {
+                PlaneShape::Rectangle { aspect_ratio, scale } => {
+                    let holds = (0.05..=1.0).contains(&aspect_ratio);
+                    let expected = "in [0.05, 1]: A is the short side over the long one, and below 0.05 a grain lies flat \
+                                    up to 87°, which the law cannot tell from fixed rotation";
+                    ParameterError::check("aspect ratio", aspect_ratio, holds, expected)?;
+                    scale
+                }
+                PlaneShape::Circle { scale } => scale,
+            };
+            let expected =
+                "in [0.1, 1]: above 1 arms leave the sphere, below 0.1 friction no longer turns the grain";
+            ParameterError::check("arm scale", scale, (0.1..=1.0).contains(&scale), expected)?;
+        }
+        let width = self.smoothing_rad;
+        let expected = "in [0, 0.2] rad: wider, the grain would rest on an edge";
+        ParameterError::check("smoothing width", width, (0.0..=0.2).contains(&width), expected)
+    }
+}
