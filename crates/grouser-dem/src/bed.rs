@@ -235,10 +235,15 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         &self.table
     }
 
-    /// Turns the ledger on or off; turned on, it begins with nothing spent.
+    /// Turns the ledger on or off; turned on, it begins with nothing spent and with what the contacts store by now.
     pub fn keep_ledger(&mut self, has_ledger: bool) {
         self.settings.has_ledger = has_ledger;
-        self.ledger = self.ledger.restarted();
+        // A pass over no time on a copy finds the stored energy and changes nothing here.
+        let mut copy = self.clone();
+        if has_ledger {
+            copy.contact_forces(0.0);
+        }
+        self.ledger = copy.ledger.restarted();
     }
 
     /// Computes contacts with `set` instead of the widest instruction set of this machine; the bytes stay the same.

@@ -81,3 +81,23 @@ fn a_settled_bed_weighs_what_its_grains_weigh() {
     assert!((bed.plane_force(0).z + weight).abs() < 0.01 * weight);
     assert!(bed.plane_force(0).x.abs() < 0.01 * weight);
 }
+
+#[test]
+fn a_ledger_turned_on_late_begins_with_what_the_contacts_store() {
+    let bed_after = |has_ledger: bool| {
+        let (spheres, settings) = falling_column::<F64>(200, 3);
+        let settings = BedSettings { has_ledger, ..settings };
+        let law = HertzMindlin::<false, false>;
+        let mut bed = Bed::new(spheres, settings, table(0.5, 0.5, Tail::CutCorrected), law).unwrap();
+        bed.run(15_000, 2e-5, |_| Ok::<(), Failure>(())).unwrap();
+        bed
+    };
+    let (kept, mut late) = (bed_after(true), bed_after(false));
+    assert_eq!(late.energy().contacts.elastic(), 0.0);
+    late.keep_ledger(true);
+    assert_eq!(late.grains(), kept.grains());
+    let (kept, late) = (kept.energy().contacts, late.energy().contacts);
+    assert!(late.normal_elastic > 0.0 && (late.normal_elastic / kept.normal_elastic - 1.0).abs() < 1e-12);
+    assert!((late.tangential_elastic / kept.tangential_elastic - 1.0).abs() < 1e-3, "{late:?} {kept:?}");
+    assert_eq!(late.dissipated(), 0.0);
+}
