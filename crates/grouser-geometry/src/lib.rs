@@ -37,15 +37,20 @@ pub mod obj;
 mod polygon;
 mod rigid_motion;
 pub mod stl;
+mod structured_mesh;
 mod surface;
 mod surface_topology;
+mod tetrahedral_mesh;
+pub mod tetrahedron_shape;
 mod wrench;
 
 pub use bounding_box::BoundingBox;
 pub use nalgebra;
 pub use rigid_motion::RigidMotion;
+pub use structured_mesh::{Lattice, box_mesh, cylinder, hollow_cylinder};
 pub use surface::{SolidProperties, TriangleSurface};
 pub use surface_topology::{Edge, EdgeUse, SurfaceTopology};
+pub use tetrahedral_mesh::{ElementOrder, Facet, MeshError, TetrahedralMesh};
 pub use wrench::Wrench;
 
 /// Vector or point in space [m, or the unit of the quantity].
