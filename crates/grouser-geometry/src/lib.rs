@@ -35,6 +35,7 @@ pub mod generate;
 pub mod mesh_doctor;
 pub mod obj;
 mod polygon;
+mod quality;
 mod rigid_motion;
 pub mod stl;
 mod structured_mesh;
@@ -42,15 +43,18 @@ mod surface;
 mod surface_topology;
 mod tetrahedral_mesh;
 pub mod tetrahedron_shape;
+mod tire_tread;
 mod wrench;
 
 pub use bounding_box::BoundingBox;
 pub use nalgebra;
+pub use quality::QualityReport;
 pub use rigid_motion::RigidMotion;
 pub use structured_mesh::{Lattice, box_mesh, cylinder, hollow_cylinder};
 pub use surface::{SolidProperties, TriangleSurface};
 pub use surface_topology::{Edge, EdgeUse, SurfaceTopology};
 pub use tetrahedral_mesh::{ElementOrder, Facet, MeshError, TetrahedralMesh};
+pub use tire_tread::{LugPattern, TireError, TireSize, TireTread};
 pub use wrench::Wrench;
 
 /// Vector or point in space [m, or the unit of the quantity].
