@@ -40,10 +40,15 @@ pub mod lathe;
 pub mod mesh_doctor;
 pub mod obj;
 mod polygon;
+mod quality;
 mod rigid_motion;
 pub mod stl;
+mod structured_mesh;
 mod surface;
 mod surface_topology;
+mod tetrahedral_mesh;
+pub mod tetrahedron_shape;
+mod tire_tread;
 mod wrench;
 pub mod xyz_text;
 
@@ -51,9 +56,13 @@ pub use bounding_box::BoundingBox;
 pub use height_grid::{GridError, HeightGrid};
 pub use height_shape::HeightShape;
 pub use nalgebra;
+pub use quality::QualityReport;
 pub use rigid_motion::RigidMotion;
+pub use structured_mesh::{Lattice, box_mesh, cylinder, hollow_cylinder};
 pub use surface::{SolidProperties, TriangleSurface};
 pub use surface_topology::{Edge, EdgeUse, SurfaceTopology};
+pub use tetrahedral_mesh::{ElementOrder, Facet, MeshError, TetrahedralMesh};
+pub use tire_tread::{LugPattern, TireError, TireSize, TireTread};
 pub use wrench::Wrench;
 
 /// Vector or point in space [m, or the unit of the quantity].

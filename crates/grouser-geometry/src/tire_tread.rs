@@ -1,0 +1,278 @@
+//! Lugged tire treads from a size code: a wall bent from bead to bead, with lugs on its crown.
+//!
+//! ```text
+//!        lug ▁▁      ▁▁         axis of the tire: y; the wall's section lies in the half plane x > 0, z = 0 and turns
+//!       ____|__|____|__|___     about y. Surfaces: rim (ends of the wall), inner, outer (everything else).
+//!      /  ______________  \
+//!     |  /    crown      \  |
+//!      \ \  side walls   / /
+//!       rim             rim
+//! ```
+
+use std::f64::consts::TAU;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Facet, Lattice, TetrahedralMesh, Vec3};
+
+/// Nominal dimensions of a tire.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TireSize {
+    /// Section width [m].
+    pub width: f64,
+    /// Height of the section over its width.
+    pub aspect_ratio: f64,
+    /// Diameter of the rim [m].
+    pub rim_diameter: f64,
+}
+
+/// Pattern of the lugs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LugPattern {
+    /// No lugs: a closed crown of the same outer radius.
+    Smooth,
+    /// Lugs on the left and on the right half, shifted by half a pitch.
+    Alternating {
+        /// Lugs on each half around the tire.
+        count: usize,
+    },
+}
+
+/// What a tread looks like; see [`TireTread::mesh`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TireTread {
+    /// Size code such as `165/65R13`.
+    pub size: String,
+    /// Thickness of the wall [m].
+    pub wall_thickness: f64,
+    /// Height of the lugs above the wall [m].
+    pub groove_depth: f64,
+    /// Pattern of the lugs.
+    pub pattern: LugPattern,
+    /// Number of tetrahedra to aim at.
+    pub n_elements: usize,
+}
+
+/// Why a tread is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TireError {
+    /// The size code cannot be read.
+    #[error(
+        "tire size '{code}' is not understood: expected width in mm / aspect ratio in % R rim diameter in inches, such as 165/65R13"
+    )]
+    SizeCode {
+        /// The code.
+        code: String,
+    },
+    /// Walls and grooves do not fit the section.
+    #[error(
+        "wall thickness {wall} m and groove depth {groove} m do not fit a section {height} m high: both must be positive and fill less than half of it"
+    )]
+    Thickness {
+        /// Thickness of the wall [m].
+        wall: f64,
+        /// Depth of the grooves [m].
+        groove: f64,
+        /// Height of the section [m].
+        height: f64,
+    },
+    /// Too few elements for the pattern.
+    #[error(
+        "{n_elements} tetrahedra are too few for this tread: expected at least {least}, four cells around the tire for each lug; ask for more elements or fewer lugs"
+    )]
+    TooFewElements {
+        /// Elements asked for.
+        n_elements: usize,
+        /// Elements that the pattern needs.
+        least: usize,
+    },
+}
+
+/// Cells along the wall from bead to bead: side wall, crown, side wall.
+const SIDE_CELLS: usize = 5;
+const CROWN_CELLS: usize = 10;
+/// Cells across the wall and across a lug.
+const WALL_CELLS: usize = 1;
+const LUG_CELLS: usize = 1;
+
+impl TireSize {
+    /// Reads a size code: width in mm, aspect ratio in per cent, rim diameter in inches.
+    ///
+    /// # Errors
+    /// [`TireError::SizeCode`].
+    pub fn parse(code: &str) -> Result<Self, TireError> {
+        let parse = || {
+            let (width, rest) = code.split_once('/')?;
+            let (aspect, rim) = rest.split_once(['R', 'r'])?;
+            let [width, aspect, rim] =
+                [width, aspect, rim].map(|s| s.trim().parse::<f64>().ok().filter(|v| *v > 0.0));
+            Some(Self { width: width? / 1e3, aspect_ratio: aspect? / 100.0, rim_diameter: rim? * 0.0254 })
+        };
+        parse().ok_or_else(|| TireError::SizeCode { code: code.to_owned() })
+    }
+
+    /// Outer radius: half of rim diameter plus section height [m].
+    pub fn outer_radius(&self) -> f64 {
+        self.rim_diameter / 2.0 + self.aspect_ratio * self.width
+    }
+}
+
+impl TireTread {
+    /// Tetrahedra of the tread around the y axis, centred in the origin; regions `carcass` (wall) and `tread` (lugs),
+    /// surfaces `rim`, `inner` and `outer`.
+    ///
+    /// # Errors
+    /// [`TireError`].
+    pub fn mesh(&self) -> Result<TetrahedralMesh, TireError> {
+        let size = TireSize::parse(&self.size)?;
+        let height = size.aspect_ratio * size.width;
+        let (wall, groove) = (self.wall_thickness, self.groove_depth);
+        if !(wall > 0.0 && groove > 0.0 && wall + groove < 0.5 * height && 2.0 * wall < 0.5 * size.width) {
+            return Err(TireError::Thickness { wall, groove, height });
+        }
+        let along = 2 * SIDE_CELLS + CROWN_CELLS;
+        // Half of the crown carries lugs, the whole of a smooth one.
+        let (n_lugs, share) = match self.pattern {
+            LugPattern::Smooth => (1, 1.0),
+            LugPattern::Alternating { count } => (count.max(1), 0.5),
+        };
+        let per_slice = 6.0 * ((along * WALL_CELLS) as f64 + share * (CROWN_CELLS * LUG_CELLS) as f64);
+        // Four cells for each pitch at least, and whole half-pitches.
+        let step = 4 * n_lugs;
+        let around = ((self.n_elements as f64 / per_slice / step as f64).round() as usize) * step;
+        let least = (step as f64 * per_slice) as usize;
+        if around == 0 {
+            return Err(TireError::TooFewElements { n_elements: self.n_elements, least });
+        }
+        let is_lug = |s: usize, a: usize| {
+            let Some(crown) = s.checked_sub(SIDE_CELLS).filter(|&c| c < CROWN_CELLS) else { return false };
+            match self.pattern {
+                LugPattern::Smooth => true,
+                LugPattern::Alternating { .. } => {
+                    let half_pitch = around / (2 * n_lugs);
+                    (a / half_pitch + usize::from(crown >= CROWN_CELLS / 2)).is_multiple_of(2)
+                }
+            }
+        };
+        let lattice = Lattice { cells: [along, around, WALL_CELLS + LUG_CELLS], is_closed: true };
+        let keep = |[s, a, layer]: [usize; 3]| layer < WALL_CELLS || is_lug(s, a);
+        let map = |[s, a, layer]: [usize; 3]| {
+            let depth = if layer <= WALL_CELLS {
+                wall * layer as f64 / WALL_CELLS as f64
+            } else {
+                wall + groove * (layer - WALL_CELLS) as f64 / LUG_CELLS as f64
+            };
+            let [radius, y] = self.section(size, s, depth);
+            let angle = TAU * (a % around) as f64 / around as f64;
+            Vec3::new(radius * angle.cos(), y, radius * angle.sin())
+        };
+        let mut mesh = lattice.mesh(keep, map);
+        self.name_parts(&mut mesh, keep, lattice.cells);
+        Ok(mesh)
+    }
+
+    /// Radius and y of the point at place `s` along the wall, `depth` [m] outside its inner face.
+    fn section(&self, size: TireSize, s: usize, depth: f64) -> [f64; 2] {
+        // Inner face: half of a superellipse that fills the section inside wall and lugs.
+        let half_width = size.width / 2.0 - self.wall_thickness;
+        let rim = size.rim_diameter / 2.0;
+        let height = size.aspect_ratio * size.width - self.wall_thickness - self.groove_depth;
+        let crown = 0.8 * half_width;
+        let (place, end) = (s as f64, (2 * SIDE_CELLS + CROWN_CELLS) as f64);
+        let side = SIDE_CELLS as f64;
+        if place < side || place > end - side {
+            let (t, sign) = if place < side { (place / side, -1.0) } else { ((end - place) / side, 1.0) };
+            // A quarter of an ellipse from the bead (t = 0) to the edge of the crown (t = 1), bulging outwards.
+            let angle = t * std::f64::consts::FRAC_PI_2;
+            let y = crown + (half_width - crown) * angle.cos();
+            let point = [rim + height * angle.sin(), sign * y];
+            let normal = [(half_width - crown) * angle.sin(), sign * height * angle.cos()];
+            let length = normal[0].hypot(normal[1]);
+            [point[0] + depth * normal[0] / length, point[1] + depth * normal[1] / length]
+        } else {
+            let t = (place - side) / (end - 2.0 * side);
+            [rim + height + depth, crown * (2.0 * t - 1.0)]
+        }
+    }
+
+    fn name_parts(&self, mesh: &mut TetrahedralMesh, keep: impl Fn([usize; 3]) -> bool, cells: [usize; 3]) {
+        mesh.region_names = vec!["carcass".to_owned(), "tread".to_owned()];
+        let kept = (0..cells[0])
+            .flat_map(|s| (0..cells[1]).flat_map(move |a| (0..cells[2]).map(move |layer| [s, a, layer])))
+            .filter(|&c| keep(c));
+        mesh.region_of_element = kept.flat_map(|[_, _, layer]| [u32::from(layer >= WALL_CELLS); 6]).collect();
+        let mut take = |name: &str| mesh.surfaces.remove(name).unwrap_or_default();
+        let inner = take("third_min");
+        let mut rim: Vec<Facet> = [take("first_min"), take("first_max")].concat();
+        rim.sort_unstable();
+        mesh.surfaces.clear();
+        let mut outer = mesh.boundary().expect("a lattice shares each face between two cells at most");
+        outer.retain(|f| inner.binary_search(f).is_err() && rim.binary_search(f).is_err());
+        mesh.surfaces.insert("inner".to_owned(), inner);
+        mesh.surfaces.insert("rim".to_owned(), rim);
+        mesh.surfaces.insert("outer".to_owned(), outer);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quality::QualityReport;
+
+    fn tread(pattern: LugPattern) -> TireTread {
+        TireTread {
+            size: "165/65R13".to_owned(),
+            wall_thickness: 0.016,
+            groove_depth: 0.015,
+            pattern,
+            n_elements: 24_000,
+        }
+    }
+
+    #[test]
+    fn size_code_gives_the_radius_of_the_standard() {
+        // 330.2 mm + 2 x 0.65 x 165 mm = 544.7 mm across.
+        let size = TireSize::parse("165/65R13").unwrap();
+        assert!((size.outer_radius() - 0.272_35).abs() < 1e-12);
+        assert!(TireSize::parse("wide").unwrap_err().to_string().contains("165/65R13"));
+    }
+
+    #[test]
+    fn treads_are_sound_meshes_of_about_the_size_asked_for() {
+        for pattern in [LugPattern::Smooth, LugPattern::Alternating { count: 20 }] {
+            let mesh = tread(pattern).mesh().unwrap();
+            mesh.validate().unwrap();
+            let n = mesh.n_elements() as f64;
+            assert!((n / 24_000.0 - 1.0).abs() < 0.1, "{pattern:?}: {n}");
+            let largest = mesh.nodes.iter().map(|x| x.x.hypot(x.z)).fold(0.0, f64::max);
+            assert!((largest - 0.272_35).abs() < 1e-9);
+            let quality = QualityReport::of(&mesh);
+            assert!(quality.smallest_dihedral_angle > 10f64.to_radians(), "{pattern:?}: {quality:?}");
+            // Every edge of the whole boundary is shared by two facets: rim, inner and outer close the solid.
+            let parts: usize = ["rim", "inner", "outer"].iter().map(|s| mesh.facets(s).unwrap().len()).sum();
+            assert_eq!(parts, mesh.boundary().unwrap().len());
+            let (surface, _) = mesh.triangle_surface(&mesh.boundary().unwrap());
+            assert!((surface.solid_properties().volume / mesh.volume() - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn lugs_alternate_between_the_halves() {
+        let mesh = tread(LugPattern::Alternating { count: 20 }).mesh().unwrap();
+        let volume = |is_left: bool| -> f64 {
+            (0..mesh.n_elements())
+                .filter(|&e| mesh.region_of_element[e] == 1)
+                .filter(|&e| (mesh.element_positions(e).iter().map(|x| x.y).sum::<f64>() < 0.0) == is_left)
+                .map(|e| mesh.element_volume(e))
+                .sum()
+        };
+        assert!(volume(true) > 0.0 && (volume(true) / volume(false) - 1.0).abs() < 1e-9);
+        let mut too_thick = tread(LugPattern::Smooth);
+        too_thick.wall_thickness = 0.06;
+        assert!(matches!(too_thick.mesh(), Err(TireError::Thickness { .. })));
+        let mut too_coarse = tread(LugPattern::Alternating { count: 20 });
+        too_coarse.n_elements = 500;
+        assert!(matches!(too_coarse.mesh(), Err(TireError::TooFewElements { .. })));
+    }
+}
