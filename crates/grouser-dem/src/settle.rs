@@ -68,8 +68,10 @@ impl Settling {
         &mut self,
         bed: &mut Bed<L, P>,
     ) -> Result<Option<Settled>, Failure> {
-        bed.run(STEPS_PER_LOOK, self.time_step, |_| Ok::<(), Failure>(()))?;
-        self.n_steps += STEPS_PER_LOOK;
+        bed.run(STEPS_PER_LOOK, self.time_step, |_| {
+            self.n_steps += 1;
+            Ok::<(), Failure>(())
+        })?;
         let ratio = kinetic_energy_ratio(bed);
         // Touching grains carry each other: fewer than one contact a grain means that the bed is still falling.
         let carries_itself = bed.n_contacts() >= bed.grains().len() || bed.grains().len() < 8;

@@ -172,15 +172,15 @@ impl<L: Law> Pressing<L> {
     /// When the motion has become meaningless.
     pub fn advance(&mut self, n_steps: u64) -> Result<(), Failure> {
         let (law, dt) = (L::default(), self.time_step);
-        let Self { bed, plate, sum, .. } = self;
+        let Self { bed, plate, sum, steps_done, .. } = self;
         let table = bed.pair_table().clone();
         bed.run(n_steps, dt, |grains| {
             // The plate moves, meets the grains, and both receive their forces.
             let load = plate.step(grains, &law, &table, dt)?;
             *sum += load;
+            *steps_done += 1;
             Ok::<(), Failure>(())
         })?;
-        self.steps_done += n_steps;
         if self.steps_done.is_multiple_of(self.steps_per_sample) {
             self.sample();
         }

@@ -1,6 +1,7 @@
 //! The program as a user runs it: bytes, interruptions, messages, exit status.
 
 mod bytes;
+mod killed;
 mod messages;
 
 use std::path::Path;

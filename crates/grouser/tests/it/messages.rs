@@ -83,6 +83,8 @@ fn a_tool_too_fast_for_its_bed_fails_with_step_time_grain_and_remedy_and_keeps_a
     for part in ["grain ", "(step ", " s, plate of 30 mm)", "remedy: ", "checkpoint was kept"] {
         assert!(message.contains(part), "{part} is not in: {message}");
     }
+    // The very step that failed, not the sample or look before it.
+    assert!(!message.contains("(step 0,"), "{message}");
     assert!(out.join("checkpoint.bin").is_file());
     let summary = fs::read_to_string(out.join("summary.json")).unwrap();
     assert!(summary.contains("\"status\": \"failed\"") && summary.contains("\"error\""));
