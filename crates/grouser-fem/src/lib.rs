@@ -61,6 +61,7 @@ mod solid;
 mod stable_step;
 pub mod statics;
 pub mod tensor;
+pub mod verification;
 
 pub use dynamics::{DynamicsError, Ledger};
 pub use fields::ElementFields;

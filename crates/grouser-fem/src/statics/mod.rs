@@ -160,7 +160,7 @@ impl Solid {
             };
             residual = if scale > 0.0 { free(&out_of_balance) / scale } else { 0.0 };
             if iterations > 0 && (is_linear || residual <= options.tolerance) {
-                self.state.reaction = std::mem::take(&mut self.reactions_of(&out_of_balance));
+                self.state.reaction = self.reactions_of(&out_of_balance);
                 return Ok(());
             }
             let mut stiffness = self.tangent_stiffness(fraction);
