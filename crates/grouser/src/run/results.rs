@@ -7,7 +7,7 @@ use crate::calibration::{PlateFit, PlatePoint, fit_plates};
 use crate::output::chart::{Chart, Mark, Series};
 use crate::output::summary::{self, Criterion, Energy, EnergyEntry, Metric, Status, Summary, Time};
 use crate::output::write_atomic;
-use crate::scene::{Motion, PressureSinkage, Reference, Soil};
+use crate::scene::{Motion, PressureSinkage, Reference};
 use grouser_dem::TimeStep;
 use std::collections::BTreeMap;
 use std::io;
@@ -96,7 +96,7 @@ pub(super) fn leave<L: Law>(
         },
         energy: energy(&state.done),
         conventions: conventions(),
-        metrics: [bed_metrics(runner, state), comparison.metrics()].concat(),
+        metrics: [bed_metrics(state), comparison.metrics()].concat(),
         files,
     };
     summary.write(folder)?;
@@ -147,7 +147,7 @@ fn conventions() -> BTreeMap<&'static str, String> {
     ])
 }
 
-fn bed_metrics<L: Law>(runner: &Runner, state: &State<L>) -> Vec<Metric> {
+fn bed_metrics<L: Law>(state: &State<L>) -> Vec<Metric> {
     let (bed, settled) = match &state.stage {
         RunStage::Settling { .. } => return Vec::new(),
         RunStage::Pressing { bed, settled, .. } | RunStage::Done { bed, settled } => (bed, settled),
@@ -163,8 +163,6 @@ fn bed_metrics<L: Law>(runner: &Runner, state: &State<L>) -> Vec<Metric> {
         unit: unit.into(),
         ..Metric::default()
     };
-    let Soil::Grains(soil) = &runner.scenario.soil;
-    let _ = soil;
     vec![
         metric("grains", spheres.len() as f64, "-"),
         metric("bed depth", level, "m"),
