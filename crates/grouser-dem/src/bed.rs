@@ -65,7 +65,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         if <L::Rotation as RotationLaw<P::Real>>::Frame::IS_TRACKED {
             grains.track_orientations();
         }
-        let neighbours = Neighbours::new(grains.smallest_radius);
+        let neighbours = Neighbours::new(&grains);
         let ledger = ContactLedger::default();
         let set = InstructionSet::detect();
         Ok(Self {
@@ -166,11 +166,16 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
             has_ledger: self.settings.has_ledger,
             set: self.set,
         };
-        let Neighbours { slabs, is_ring, .. } = &mut self.neighbours;
+        let Neighbours { slabs, is_ring, large, .. } = &mut self.neighbours;
+        // Pairs of large grains first: the last sweep moves the grains.
+        let stays = Motion { stages: Stages::None, ..motion };
+        for level in large.iter_mut().rev() {
+            sweep(&mut level.slabs, level.is_ring, &[], &input, &stays);
+        }
         let pace = sweep(slabs, *is_ring, &self.settings.planes, &input, &motion);
         let mut pass = ContactLedger::default();
         self.is_too_deep = false;
-        for slab in slabs {
+        for slab in self.neighbours.all_slabs() {
             pass += slab.sums.ledger;
             self.is_too_deep |= slab.sums.is_too_deep;
         }
@@ -253,12 +258,12 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
 
     /// Number of touching pairs of grains at the last force pass.
     pub fn n_contacts(&self) -> usize {
-        self.neighbours.slabs.iter().map(|slab| slab.n_touching()).sum()
+        self.neighbours.all_slabs().map(|slab| slab.n_touching()).sum()
     }
 
     /// Touching pairs of the last force pass, as places in [`Grains::spheres`].
     pub fn contacts(&self) -> impl Iterator<Item = [u32; 2]> {
-        self.neighbours.slabs.iter().flat_map(|slab| {
+        self.neighbours.all_slabs().flat_map(|slab| {
             slab.pairs
                 .iter()
                 .enumerate()
@@ -269,7 +274,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
 
     /// Number of listed pairs, touching or near.
     pub fn n_listed(&self) -> usize {
-        self.neighbours.slabs.iter().map(|slab| slab.pairs.len()).sum()
+        self.neighbours.all_slabs().map(|slab| slab.pairs.len()).sum()
     }
 
     /// How often the lists were made.

@@ -4,6 +4,9 @@ use crate::Domain;
 use grouser_contact::{Precision, Real, Sphere};
 use grouser_geometry::Vec3;
 
+/// Most cells per grain.
+const CELLS_PER_GRAIN: usize = 8;
+
 /// A regular grid over the bed. Cells are numbered slab by slab along the axis with the most cells, then row by row.
 #[derive(Debug)]
 pub(crate) struct CellGrid {
@@ -19,8 +22,9 @@ pub(crate) struct CellGrid {
 }
 
 impl CellGrid {
-    /// Grid with cells of edge `range` or more [m] around the given grains, which must be finite.
-    pub fn new<P: Precision>(spheres: &[Sphere<P>], domain: &Domain, range: f64) -> Self {
+    /// Grid with cells of edge `range` or more [m] around the given grains, which must be finite. A few cells a grain at
+    /// most: where grains are sparse, cells are larger.
+    pub fn new<P: Precision>(spheres: &[Sphere<P>], domain: &Domain, mut range: f64) -> Self {
         let (mut lower, mut upper) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
         for sphere in spheres {
             let place = to_f64(sphere);
@@ -33,7 +37,12 @@ impl CellGrid {
             }
         }
         let extent = upper - lower;
-        let count = |axis: usize| ((extent[axis] / range).floor() as usize).clamp(1, 1 << 9);
+        let most_cells = CELLS_PER_GRAIN * spheres.len() + 27;
+        let count_at = |range: f64, axis: usize| ((extent[axis] / range).floor() as usize).clamp(1, 1 << 9);
+        while (0..3).map(|axis| count_at(range, axis)).product::<usize>() > most_cells {
+            range *= 1.25;
+        }
+        let count = |axis: usize| count_at(range, axis);
         let mut axes = [0, 1, 2];
         axes.sort_by_key(|&axis| std::cmp::Reverse(count(axis)));
         let counts = axes.map(count);
@@ -45,6 +54,12 @@ impl CellGrid {
         }
         let is_periodic = axes.map(|axis| domain.is_periodic[axis]);
         Self { origin: lower, inverse_edge, axes, counts, is_periodic, first: Vec::new() }
+    }
+
+    /// World axis along which slabs follow each other, and the edge of a cell along it [m].
+    pub fn slab_axis(&self) -> (usize, f64) {
+        let axis = self.axes[0];
+        (axis, if self.inverse_edge[axis] > 0.0 { 1.0 / self.inverse_edge[axis] } else { f64::INFINITY })
     }
 
     /// Number of the cell of a sphere.
@@ -88,6 +103,46 @@ impl CellGrid {
             Some(there.rem_euclid(count) as usize)
         } else {
             (0..count).contains(&there).then_some(there as usize)
+        }
+    }
+
+    /// Calls `visit` with ranges of grains (in sorted order) that hold every grain whose centre lies within `reach` [m] of
+    /// `centre` along each axis.
+    pub fn ranges_around(&self, centre: Vec3, reach: f64, mut visit: impl FnMut(std::ops::Range<u32>)) {
+        // First and last cell of each direction; along a period they may lie outside the counts.
+        let mut spans = [(0, 0); 3];
+        for direction in 0..3 {
+            let axis = self.axes[direction];
+            let count = self.counts[direction] as isize;
+            let cell = |place: f64| ((place - self.origin[axis]) * self.inverse_edge[axis]).floor() as isize;
+            let (from, to) = (cell(centre[axis] - reach), cell(centre[axis] + reach));
+            spans[direction] = match self.is_periodic[direction] {
+                true if to - from + 1 >= count => (0, count - 1),
+                true => (from, to),
+                // What lies outside the grid is sorted into its outermost cells.
+                false => (from.clamp(0, count - 1), to.clamp(0, count - 1)),
+            };
+        }
+        let wrapped =
+            |direction: usize, index: isize| index.rem_euclid(self.counts[direction] as isize) as usize;
+        let [slabs, rows, (from, to)] = spans;
+        for slab in slabs.0..=slabs.1 {
+            for row in rows.0..=rows.1 {
+                let base = (wrapped(0, slab) * self.counts[1] + wrapped(1, row)) * self.counts[2];
+                let mut columns = |from: usize, to: usize| {
+                    let range = self.first[base + from]..self.first[base + to + 1];
+                    if !range.is_empty() {
+                        visit(range);
+                    }
+                };
+                let (first, last) = (wrapped(2, from), wrapped(2, to));
+                if first <= last {
+                    columns(first, last);
+                } else {
+                    columns(first, self.counts[2] - 1);
+                    columns(0, last);
+                }
+            }
         }
     }
 

@@ -1,7 +1,9 @@
 //! Verlet lists over the sorted bed, with a skin that tunes itself.
 
 use crate::cell_grid::CellGrid;
+use crate::large_grains::{LargeGrains, lists_of_large_grains};
 use crate::plane::{Plane, PlaneList};
+use crate::size_levels::SizeLevels;
 use crate::slab::{Slab, layers_of_slabs};
 use crate::{Domain, Grains};
 use grouser_contact::{Memory, Precision, Real, Vector};
@@ -17,9 +19,14 @@ const REBUILD_COST: f64 = 80.0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "M: Memory<P::Real>")]
 pub(crate) struct Neighbours<P: Precision, M> {
+    /// Pairs of the lowest size level: all of them where sizes differ little.
     pub slabs: Vec<Slab<P::Real, M>>,
     /// The last slab's pairs end in the first one.
     pub is_ring: bool,
+    /// Pairs of each level above; the larger grain of a pair decides.
+    pub large: Vec<LargeGrains<P::Real, M>>,
+    levels: SizeLevels,
+    mean_radius: f64,
     /// Gap up to which a pair is listed [m].
     skin: f64,
     /// Upper bound of what any grain has moved since the lists were made [m].
@@ -33,16 +40,25 @@ pub(crate) struct Neighbours<P: Precision, M> {
 
 impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
     /// No lists yet; the first look makes them.
-    pub fn new(smallest_radius: f64) -> Self {
+    pub fn new(grains: &Grains<P>) -> Self {
+        let radii = grains.spheres.iter().map(|sphere| sphere.radius.to_f64());
         Self {
             slabs: Vec::new(),
             is_ring: false,
-            skin: 0.2 * smallest_radius,
+            large: Vec::new(),
+            levels: SizeLevels::new(&grains.spheres),
+            mean_radius: radii.sum::<f64>() / grains.len() as f64,
+            skin: 0.2 * grains.smallest_radius,
             moved: f64::INFINITY,
             reference: Vec::new(),
             steps_since_rebuild: 0,
             n_rebuilds: 0,
         }
+    }
+
+    /// The slabs of every level.
+    pub fn all_slabs(&self) -> impl Iterator<Item = &Slab<P::Real, M>> {
+        self.slabs.iter().chain(self.large.iter().flat_map(|level| &level.slabs))
     }
 
     /// Gap up to which a pair is listed [m].
@@ -74,20 +90,24 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
     /// Sorts the grains and makes the lists anew; every touching pair keeps its memory.
     pub fn rebuild(&mut self, grains: &mut Grains<P>, domain: &Domain, planes: &[Plane]) {
         self.tune_skin(grains);
-        let range = 2.0 * grains.largest_radius + self.skin;
+        let range = 2.0 * self.levels.largest(0) + self.skin;
         let mut grid = CellGrid::new(&grains.spheres, domain, range);
         let cells: Vec<u32> = grains.spheres.iter().map(|sphere| grid.cell_of(sphere)).collect();
         let order = grid.sort(&cells);
         grains.reorder(&order);
         let period = domain.period();
-        let skin = P::Coordinate::from_f64(self.skin);
+        let [skin, largest] = [self.skin, self.levels.largest(0)].map(P::Coordinate::from_f64);
         let spheres = &grains.spheres;
-        let mut slabs: Vec<Slab<P::Real, M>> = layers_of_slabs(&grid, GRAINS_PER_SLAB)
+        let mut slabs: Vec<Slab<P::Real, M>> = layers_of_slabs(&grid, GRAINS_PER_SLAB, 1)
             .into_par_iter()
-            .map(|layers| Slab::build(&grid, layers, spheres, &period, skin))
+            .map(|layers| Slab::build(&grid, layers, spheres, &period, skin, largest))
             .collect();
+        let mut large = lists_of_large_grains(&self.levels, &grid, spheres, domain, self.skin);
         let old = Lookup::new(&self.slabs, spheres.len());
         slabs.par_iter_mut().for_each(|slab| old.carry_over(slab, &order));
+        for (level, before) in large.iter_mut().zip(&self.large) {
+            level.slabs.par_iter_mut().for_each(|slab| carry_over(slab, &order, |i, j| before.recall(i, j)));
+        }
         for slab in &mut slabs {
             let list = |(index, plane)| {
                 let remembered = |grain: u32| old.plane_memory(index, order[grain as usize]);
@@ -96,6 +116,7 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
             slab.planes = planes.iter().enumerate().map(list).collect();
         }
         self.slabs = slabs;
+        self.large = large;
         self.is_ring = grid.is_slab_axis_periodic() && self.slabs.len() > 1;
         self.reference.clear();
         self.reference.extend(grains.spheres.iter().map(|sphere| sphere.position));
@@ -105,14 +126,15 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
     }
 
     /// Balances looks at pairs, which grow with the skin s like p₀ (1 + s/2r)³, against rebuilds, which come every
-    /// s/(2u) steps when the fastest grain moves u a step: the least cost has p₀ 3/(2r) (1 + s/2r)² = 2 u B / s².
+    /// s/(2u) steps when the fastest grain moves u a step: the least cost has p₀ 3/(2r) (1 + s/2r)² = 2 u B / s². Here r is
+    /// the mean radius.
     fn tune_skin(&mut self, grains: &Grains<P>) {
         if self.steps_since_rebuild == 0 || self.slabs.is_empty() {
             return;
         }
         let n_grains = grains.spheres.len() as f64;
-        let diameter = 2.0 * grains.smallest_radius;
-        let n_pairs: usize = self.slabs.iter().map(|slab| slab.pairs.len()).sum();
+        let diameter = 2.0 * self.mean_radius;
+        let n_pairs: usize = self.all_slabs().map(|slab| slab.pairs.len()).sum();
         let pairs_without_skin = n_pairs as f64 / n_grains / (1.0 + self.skin / diameter).powi(3);
         let per_step = self.moved / f64::from(self.steps_since_rebuild);
         let mut skin = self.skin;
@@ -126,7 +148,7 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
 
     /// Memory held by the lists [bytes].
     pub fn bytes(&self) -> usize {
-        self.slabs.iter().map(Slab::bytes).sum::<usize>()
+        self.all_slabs().map(Slab::bytes).sum::<usize>()
             + size_of::<Vector<P::Coordinate>>() * self.reference.capacity()
     }
 }
@@ -141,18 +163,14 @@ impl<'a, T: Real, M: Memory<T>> Lookup<'a, T, M> {
     fn new(slabs: &'a [Slab<T, M>], n_grains: usize) -> Self {
         let mut slab_of = Vec::with_capacity(n_grains);
         for (index, slab) in slabs.iter().enumerate() {
-            slab_of.resize(slab_of.len() + slab.n_grains(), index as u32);
+            slab_of.resize(slab_of.len() + slab.n_grains as usize, index as u32);
         }
         Self { slabs, slab_of }
     }
 
     /// Memory of the pair of old grains (i, j), seen from `i`; `None` when the pair did not touch.
     fn memory(&self, i: u32, j: u32) -> Option<M> {
-        let seek = |i: u32, j: u32| {
-            let slab = &self.slabs[*self.slab_of.get(i as usize)? as usize];
-            let place = slab.find(i, j)?;
-            slab.has_touched(place).then(|| slab.memory[place])
-        };
+        let seek = |i: u32, j: u32| self.slabs[*self.slab_of.get(i as usize)? as usize].recall(i, j);
         seek(i, j).or_else(|| seek(j, i).map(M::seen_from_the_other))
     }
 
@@ -164,12 +182,21 @@ impl<'a, T: Real, M: Memory<T>> Lookup<'a, T, M> {
 
     /// Fills the memory of a new slab; `order[new]` is the old number of a grain.
     fn carry_over(&self, slab: &mut Slab<T, M>, order: &[u32]) {
-        for place in 0..slab.pairs.len() {
-            let [i, j] = slab.pairs[place].grains();
-            if let Some(memory) = self.memory(order[i as usize], order[j as usize]) {
-                slab.memory[place] = memory;
-                slab.touched[place / 64] |= 1 << (place % 64);
-            }
+        carry_over(slab, order, |i, j| self.memory(i, j));
+    }
+}
+
+/// Fills the memory of a new slab from what pairs of old grains remember.
+fn carry_over<T: Real, M: Memory<T>>(
+    slab: &mut Slab<T, M>,
+    order: &[u32],
+    recall: impl Fn(u32, u32) -> Option<M>,
+) {
+    for place in 0..slab.pairs.len() {
+        let [i, j] = slab.pairs[place].grains();
+        if let Some(memory) = recall(order[i as usize], order[j as usize]) {
+            slab.memory[place] = memory;
+            slab.touched[place / 64] |= 1 << (place % 64);
         }
     }
 }

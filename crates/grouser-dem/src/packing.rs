@@ -20,6 +20,14 @@ pub enum RadiusDistribution {
         /// Largest radius [m].
         to_m: f64,
     },
+    /// Mass spread evenly over the logarithm of the radius: a straight grading curve. The number of grains grows like r⁻⁴
+    /// towards small ones.
+    Graded {
+        /// Smallest radius [m].
+        from_m: f64,
+        /// Largest radius [m], above the smallest.
+        to_m: f64,
+    },
 }
 
 impl RadiusDistribution {
@@ -27,15 +35,34 @@ impl RadiusDistribution {
     pub fn range(&self) -> (f64, f64) {
         match *self {
             Self::Monodisperse(radius) => (radius, radius),
-            Self::Uniform { from_m, to_m } => (from_m, to_m),
+            Self::Uniform { from_m, to_m } | Self::Graded { from_m, to_m } => (from_m, to_m),
         }
     }
 
     /// Mean volume of a grain [m³].
     pub fn mean_volume(&self) -> f64 {
         let (a, b) = self.range();
-        // Mean of r³ over [a, b] is (a + b)(a² + b²)/4.
-        4.0 / 3.0 * std::f64::consts::PI * (a + b) * (a * a + b * b) / 4.0
+        let mean_cube = match self {
+            // Mean of r³ over [a, b] is (a + b)(a² + b²)/4.
+            Self::Monodisperse(_) | Self::Uniform { .. } => (a + b) * (a * a + b * b) / 4.0,
+            // Density 3 r⁻⁴/(a⁻³ − b⁻³).
+            Self::Graded { .. } if a == b => a.powi(3),
+            Self::Graded { .. } => 3.0 * (b / a).ln() / (a.powi(-3) - b.powi(-3)),
+        };
+        4.0 / 3.0 * std::f64::consts::PI * mean_cube
+    }
+
+    /// The radius below which `share` of the grains lie [m].
+    pub fn quantile(&self, share: f64) -> f64 {
+        let (a, b) = self.range();
+        match self {
+            Self::Monodisperse(_) | Self::Uniform { .. } => a + (b - a) * share,
+            Self::Graded { .. } => {
+                // From (r/a)⁻³ = 1 − share (1 − (b/a)⁻³), within bounds whatever the rounding.
+                let cube = 1.0 - share * (1.0 - (b / a).powi(-3));
+                (a / cube.cbrt()).clamp(a, b)
+            }
+        }
     }
 }
 
@@ -110,8 +137,16 @@ pub fn random_packing<P: Precision>(
         let mut height = layer.n_grains as f64 * layer.radii.mean_volume() / (SOLID_FRACTION * area);
         let mut cells = Cells::new(domain, bottom, 2.0 * to);
         let mut misses = 0;
+        // Large grains find no place between many small ones: they come first.
+        let mut graded = match layer.radii {
+            RadiusDistribution::Graded { .. } => {
+                (0..layer.n_grains).map(|_| layer.radii.quantile(random.random())).collect()
+            }
+            _ => Vec::new(),
+        };
+        graded.sort_unstable_by(f64::total_cmp);
         for _ in 0..layer.n_grains {
-            let radius = from + (to - from) * random.random::<f64>();
+            let radius = graded.pop().unwrap_or_else(|| layer.radii.quantile(random.random()));
             loop {
                 let share = Vec3::new(random.random(), random.random(), random.random());
                 let place = Vec3::new(

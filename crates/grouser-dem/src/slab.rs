@@ -22,7 +22,7 @@ const GRAIN_BITS: u32 = 27;
 pub(crate) const MOST_GRAINS: usize = 1 << GRAIN_BITS;
 
 impl Pair {
-    fn new(first: u32, second: u32, image: u32) -> Self {
+    pub fn new(first: u32, second: u32, image: u32) -> Self {
         Self { first, second_and_image: second | image << GRAIN_BITS }
     }
 
@@ -45,7 +45,9 @@ impl Pair {
 pub(crate) struct Slab<T: Real, M> {
     /// First grain of the slab (sorted order).
     pub first_grain: u32,
-    /// First pair of each grain of the slab; one more entry than grains.
+    /// Number of grains of the slab.
+    pub n_grains: u32,
+    /// First pair of each grain of the slab, one more entry than grains; nothing where pairs are found by their order alone.
     pub rows: Vec<u32>,
     /// Grains that may touch before the next rebuild, by rising first grain.
     pub pairs: Vec<Pair>,
@@ -69,13 +71,14 @@ pub(crate) struct SlabSums {
 }
 
 impl<T: Real, M: Memory<T>> Slab<T, M> {
-    /// Pairs whose surfaces are closer than `skin` [m], of the cell layers `layers`.
+    /// Pairs of grains up to `largest` [m] whose surfaces are closer than `skin` [m], of the cell layers `layers`.
     pub fn build<P: Precision<Real = T>>(
         grid: &CellGrid,
         layers: std::ops::Range<usize>,
         spheres: &[Sphere<P>],
         period: &Period<P::Coordinate>,
         skin: P::Coordinate,
+        largest: P::Coordinate,
     ) -> Self {
         let [_, n_rows, n_columns] = grid.counts;
         let layer = n_rows * n_columns;
@@ -89,12 +92,16 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
             grid.forward_ranges(place, |range| ranges.push(range));
             for i in grid.first[cell]..grid.first[cell + 1] {
                 let sphere = &spheres[i as usize];
+                if sphere.radius > largest {
+                    rows.push(pairs.len() as u32);
+                    continue;
+                }
                 let mut seek = |range: std::ops::Range<u32>| {
                     for j in range {
                         let other = &spheres[j as usize];
                         let reach = sphere.radius + other.radius + skin;
                         let (difference, image) = period.nearest(sphere.position - other.position);
-                        if difference.norm_squared() < reach * reach {
+                        if difference.norm_squared() < reach * reach && other.radius <= largest {
                             pairs.push(Pair::new(i, j, image));
                         }
                     }
@@ -104,27 +111,40 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
                 rows.push(pairs.len() as u32);
             }
         }
+        let n_grains = rows.len() as u32 - 1;
+        Self::of_pairs(first_grain, n_grains, rows, pairs)
+    }
+
+    /// A slab of given pairs, by rising first grain, none of which has touched yet.
+    pub fn of_pairs(first_grain: u32, n_grains: u32, rows: Vec<u32>, mut pairs: Vec<Pair>) -> Self {
         pairs.shrink_to_fit();
         let memory = vec![M::default(); pairs.len()];
         let touched = vec![0; pairs.len().div_ceil(64)];
-        Self { first_grain, rows, pairs, memory, touched, planes: Vec::new(), sums: SlabSums::default() }
-    }
-
-    /// Number of grains.
-    pub fn n_grains(&self) -> usize {
-        self.rows.len() - 1
+        let sums = SlabSums::default();
+        Self { first_grain, n_grains, rows, pairs, memory, touched, planes: Vec::new(), sums }
     }
 
     /// The slab's grains (sorted order).
     pub fn grains(&self) -> std::ops::Range<u32> {
-        self.first_grain..self.first_grain + self.n_grains() as u32
+        self.first_grain..self.first_grain + self.n_grains
     }
 
-    /// Place of the pair (i, j) of a grain `i` of this slab.
+    /// Place of the pair (i, j); with rows, `i` must be a grain of this slab.
     pub fn find(&self, i: u32, j: u32) -> Option<usize> {
-        let row = (i - self.first_grain) as usize;
-        let (from, to) = (self.rows[row] as usize, self.rows[row + 1] as usize);
+        let (from, to) = if self.rows.is_empty() {
+            let place_of = |i| self.pairs.partition_point(|pair| pair.grains()[0] < i);
+            (place_of(i), place_of(i + 1))
+        } else {
+            let row = (i - self.first_grain) as usize;
+            (self.rows[row] as usize, self.rows[row + 1] as usize)
+        };
         (from..to).find(|&place| self.pairs[place].grains()[1] == j)
+    }
+
+    /// What the pair (i, j) remembers, as [`Slab::find`]; `None` when it did not touch.
+    pub fn recall(&self, i: u32, j: u32) -> Option<M> {
+        let place = self.find(i, j)?;
+        self.has_touched(place).then(|| self.memory[place])
     }
 
     /// The pair at `place` touched at the last force pass.
@@ -146,13 +166,30 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
     }
 }
 
-/// Splits `n_layers` cell layers into slabs of about `wanted` grains; an even number of them (or one) along a period.
-pub(crate) fn layers_of_slabs(grid: &CellGrid, wanted: usize) -> Vec<std::ops::Range<usize>> {
-    let n_layers = grid.counts[0];
+/// Splits the cell layers into slabs of about `wanted` grains and at least `thickness` layers each; an even number of them
+/// (or one) along a period.
+pub(crate) fn layers_of_slabs(
+    grid: &CellGrid,
+    wanted: usize,
+    thickness: usize,
+) -> Vec<std::ops::Range<usize>> {
+    let (n_layers, layer) = (grid.counts[0], grid.counts[1] * grid.counts[2]);
     let n_grains = *grid.first.last().unwrap_or(&0) as usize;
-    let mut n_slabs = (n_grains / wanted).clamp(1, n_layers);
+    let mut n_slabs = (n_grains / wanted).clamp(1, (n_layers / thickness).max(1));
     if grid.is_slab_axis_periodic() && n_slabs > 1 {
         n_slabs -= n_slabs % 2;
     }
-    (0..n_slabs).map(|s| s * n_layers / n_slabs..(s + 1) * n_layers / n_slabs).collect()
+    let mut bounds = vec![0];
+    for slab in 1..n_slabs {
+        // The first layer before which this share of the grains lies, with room for the slabs on both sides.
+        let share = slab * n_grains / n_slabs;
+        let (mut from, mut to) = (bounds[slab - 1] + thickness, n_layers - (n_slabs - slab) * thickness);
+        while from < to {
+            let middle = (from + to) / 2;
+            if (grid.first[middle * layer] as usize) < share { from = middle + 1 } else { to = middle }
+        }
+        bounds.push(from);
+    }
+    bounds.push(n_layers);
+    bounds.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }

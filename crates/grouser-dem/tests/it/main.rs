@@ -6,6 +6,7 @@ mod failures;
 mod impact;
 mod reference_kernel;
 mod rotation;
+mod size_ratio;
 
 use grouser_contact::*;
 use grouser_dem::*;

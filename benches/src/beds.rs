@@ -1,0 +1,114 @@
+//! Beds at rest of soft sand on a floor, periodic to the sides: settled once, then kept in the build folder.
+
+use grouser_contact::{F64, HertzMindlin, Interaction, Material, PairTable, Sphere, Tail};
+use grouser_dem::*;
+use grouser_geometry::Vec3;
+use std::error::Error;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// 2600 kg/m³, E = 10 MPa, ν = 0.3.
+pub const SAND: Material = Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 2600.0 };
+/// Hertz–Mindlin with history.
+pub type Law = HertzMindlin<true, false>;
+
+/// What a bed is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct BedOf {
+    /// Radii.
+    pub radii: RadiusDistribution,
+    /// Number of grains.
+    pub n_grains: usize,
+    /// Length of the box along x and y [m].
+    pub width: [f64; 2],
+}
+
+impl BedOf {
+    /// 11 % of the Rayleigh time of the smallest grain [s]: 40 µs for grains of 4 mm.
+    pub fn time_step(&self) -> f64 {
+        0.1155 * rayleigh_time(&SAND, self.radii.range().0)
+    }
+
+    /// The bed at rest.
+    ///
+    /// # Errors
+    /// When the bed cannot be made or does not come to rest.
+    pub fn settled(&self) -> Result<Bed<Law>, Box<dyn Error>> {
+        let (from, to) = self.radii.range();
+        let [x, y] = self.width;
+        let name = format!("{}-{:.2}-{:.2}-{x}-{y}", self.n_grains, 1e3 * from, 1e3 * to);
+        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../target/bench-beds");
+        let path = folder.join(name + ".json");
+        if let Ok(text) = std::fs::read(&path) {
+            let rows: Vec<[f64; 4]> = serde_json::from_slice(&text)?;
+            let mut bed = self.of(rows.iter().map(|&[x, y, z, r]| grain(Vec3::new(x, y, z), r)).collect())?;
+            // Springs come back within some steps.
+            bed.run(500, self.time_step(), |_| Ok::<(), Failure>(()))?;
+            return Ok(bed);
+        }
+        let layer =
+            Layer { radii: self.radii, n_grains: self.n_grains, density: SAND.density_kg_m3, material: 0 };
+        let mut bed = self.of(random_packing::<F64>(&self.domain(0.5), &[layer], 1)?)?;
+        let criterion = SettleCriterion { kinetic_energy_ratio: 1e-6, longest_s: 10.0 };
+        let mut settling = Settling::new(criterion, self.time_step());
+        let begun = Instant::now();
+        let end = loop {
+            if let Some(end) = settling.advance(&mut bed)? {
+                break end;
+            }
+        };
+        println!(
+            "  settled {} grains within {:.2} s of simulated time ({:.0} s)",
+            self.n_grains,
+            end.time_s,
+            begun.elapsed().as_secs_f64()
+        );
+        let row = |s: &Sphere| {
+            let [x, y, z] = s.position.to_array();
+            [x, y, z, s.radius]
+        };
+        let mut rows: Vec<(u32, [f64; 4])> =
+            bed.grains().ids.iter().copied().zip(bed.grains().spheres.iter().map(row)).collect();
+        rows.sort_by_key(|&(id, _)| id);
+        let rows: Vec<_> = rows.into_iter().map(|(_, row)| row).collect();
+        std::fs::create_dir_all(&folder)?;
+        std::fs::write(path, serde_json::to_vec(&rows)?)?;
+        Ok(bed)
+    }
+
+    fn domain(&self, top: f64) -> Domain {
+        let [x, y] = self.width;
+        Domain { lower: Vec3::zeros(), upper: Vec3::new(x, y, top), is_periodic: [true, true, false] }
+    }
+
+    fn of(&self, spheres: Vec<Sphere>) -> Result<Bed<Law>, Box<dyn Error>> {
+        let settings = BedSettings {
+            domain: self.domain(spheres.iter().map(|s| s.position.z + s.radius).fold(0.5, f64::max)),
+            planes: vec![Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0 }],
+            gravity: Vec3::new(0.0, 0.0, -9.81),
+            rotation: Rotation::Free,
+            has_ledger: false,
+        };
+        let between = Interaction { restitution: 0.5, friction: 0.5 };
+        let table = PairTable::new(&[SAND], Tail::Keep, |_, _| between)?;
+        Ok(Bed::new(spheres, settings, table, HertzMindlin)?)
+    }
+}
+
+fn grain(place: Vec3, radius: f64) -> Sphere {
+    sphere(place, radius, SAND.density_kg_m3, 0)
+}
+
+/// Seconds per grain-step: the fastest of `n_repeats` runs of `n_steps`.
+///
+/// # Errors
+/// When the motion has become meaningless.
+pub fn cost(bed: &mut Bed<Law>, time_step: f64, n_steps: u64, n_repeats: usize) -> Result<f64, Failure> {
+    let mut fastest = f64::INFINITY;
+    for _ in 0..n_repeats {
+        let begun = Instant::now();
+        bed.run(n_steps, time_step, |_| Ok::<(), Failure>(()))?;
+        fastest = fastest.min(begun.elapsed().as_secs_f64());
+    }
+    Ok(fastest / (n_steps as f64 * bed.grains().len() as f64))
+}
