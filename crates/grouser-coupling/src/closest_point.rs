@@ -56,6 +56,28 @@ pub fn closest_point(place: &Vec3, [a, b, c]: &[Vec3; 3]) -> (Vec3, Feature) {
     (a + ab * (weight_b / whole) + ac * (weight_c / whole), Feature::Face)
 }
 
+/// Natural coordinates (L_a, L_b, L_c) of a `point` of the triangle `[a, b, c]`, which sum to 1: point = L_a a + L_b b + L_c c.
+/// A triangle without area counts as its first corner.
+///
+/// ```
+/// # use grouser_coupling::natural_coordinates;
+/// # use grouser_geometry::Vec3;
+/// let [a, b, c] = natural_coordinates(&Vec3::new(0.2, 0.3, 0.0), &[Vec3::zeros(), Vec3::x(), Vec3::y()]);
+/// assert!((a - 0.5).abs() < 1e-15 && (b - 0.2).abs() < 1e-15 && (c - 0.3).abs() < 1e-15);
+/// ```
+pub fn natural_coordinates(point: &Vec3, [a, b, c]: &[Vec3; 3]) -> [f64; 3] {
+    let (ab, ac, from_a) = (b - a, c - a, point - a);
+    // Normal equations of from_a = L_b ab + L_c ac.
+    let (bb, bc, cc) = (ab.dot(&ab), ab.dot(&ac), ac.dot(&ac));
+    let (pb, pc) = (from_a.dot(&ab), from_a.dot(&ac));
+    let determinant = bb * cc - bc * bc;
+    if determinant <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let (l_b, l_c) = ((cc * pb - bc * pc) / determinant, (bb * pc - bc * pb) / determinant);
+    [1.0 - l_b - l_c, l_b, l_c]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

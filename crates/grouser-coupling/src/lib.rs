@@ -1,4 +1,4 @@
-//! Grains against triangle surfaces, over borrowed slices: this crate knows neither the bed nor the solid.
+//! Grains against triangle surfaces, rigid or deforming, over borrowed slices: this crate knows neither the bed nor the solid.
 //!
 //! ```text
 //!        .-----.
@@ -29,9 +29,16 @@
 
 mod candidates;
 mod closest_point;
+mod contact_pass;
+mod deforming_contacts;
+mod mirror;
 mod neighbourhood;
 mod surface_contacts;
 
-pub use closest_point::{Feature, closest_point};
+pub use candidates::Margin;
+pub use closest_point::{Feature, closest_point, natural_coordinates};
+pub use contact_pass::{Deepest, Seen, Step};
+pub use deforming_contacts::DeformingContacts;
+pub use mirror::{Mirror, MirrorError};
 pub use neighbourhood::{SMOOTH_ANGLE, Touch, touches};
-pub use surface_contacts::{Deepest, Step, SurfaceContacts};
+pub use surface_contacts::SurfaceContacts;

@@ -1,5 +1,6 @@
 //! Spheres on triangle surfaces against planes, closed forms and the surfaces' own facets.
 
+mod deforming_surfaces;
 mod moving_surfaces;
 
 use grouser_contact::*;

@@ -1,0 +1,201 @@
+//! One pass over the grains near a surface: touches, memories, law, equal and opposite forces.
+
+use crate::candidates::{Candidates, centre};
+use crate::neighbourhood::{Touch, touches};
+use grouser_contact::{
+    Contact, ContactLaw, ContactLedger, Load, Memory, PairTable, Precision, Real, Sphere, Vector,
+};
+use grouser_geometry::{TriangleSurface, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// Cosine of the angle that the normal of a contact may turn in a step and still be the same contact: 45°.
+const SAME_CONTACT: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// How a surface moves, and what becomes of the forces on it. Triangles lie in the frame of the surface.
+pub(crate) trait Carrier {
+    /// A place of the world in the frame of the surface [m].
+    fn place_in_frame(&self, place: &Vec3) -> Vec3;
+    /// A point of the frame in the world [m].
+    fn point(&self, in_frame: &Vec3) -> Vec3;
+    /// A direction of the frame in the world.
+    fn direction(&self, in_frame: &Vec3) -> Vec3;
+    /// Velocity of the surface at a touch, which lies at `point` in the world [m/s].
+    fn velocity(&self, touch: &Touch, point: &Vec3) -> Vec3;
+    /// Spin of the surface at a touch; only its part along the world's `normal` is used [rad/s].
+    fn spin(&self, touch: &Touch, normal: &Vec3) -> Vec3;
+    /// Takes a force on the surface, in the world's frame [N].
+    fn receive(&mut self, touch: &Touch, point: &Vec3, force: Vec3);
+}
+
+/// One contact between two steps.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Remembered<M> {
+    id: u32,
+    /// Normal in the frame of the surface.
+    normal: Vec3,
+    memory: M,
+}
+
+/// The deepest contact of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Deepest {
+    /// Permanent number of the grain.
+    pub grain: u32,
+    /// Its centre [m].
+    pub position: Vec3,
+    /// Overlap over radius [-]; above 1 for a grain whose centre has passed through the surface.
+    pub depth: f64,
+}
+
+/// A contact as an observer sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// Permanent number of the grain.
+    pub grain: u32,
+    /// Contact point in the world [m].
+    pub point: Vec3,
+    /// Force on the surface in the world's frame [N].
+    pub force: Vec3,
+}
+
+/// What one step needs beside the contacts.
+pub struct Step<'a, L, T: Real> {
+    /// The law.
+    pub law: &'a L,
+    /// Constants of every pair of materials.
+    pub table: &'a PairTable<T>,
+    /// Time step [s].
+    pub time_step: f64,
+    /// Upper bound of the speed of any grain [m/s].
+    pub fastest: f64,
+}
+
+/// What the contacts of one surface remember from step to step.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "M: Serialize + serde::de::DeserializeOwned")]
+pub(crate) struct Contacts<M> {
+    /// Contacts of the last step, by rising number of the grain.
+    remembered: Vec<Remembered<M>>,
+    pub ledger: ContactLedger,
+    pub deepest: Option<Deepest>,
+}
+
+impl<M> Default for Contacts<M> {
+    fn default() -> Self {
+        Self { remembered: Vec::new(), ledger: ContactLedger::default(), deepest: None }
+    }
+}
+
+impl<M> Contacts<M> {
+    /// Number of contacts of the last step.
+    pub fn n_contacts(&self) -> usize {
+        self.remembered.len()
+    }
+
+    /// Steps 2 to 6 of `docs/theory/surfaces.md` for the grains of `candidates`: adds to their `loads`, gives the opposite to
+    /// the carrier, and shows every contact to `observe`.
+    #[inline]
+    pub fn pass<P: Precision, L: ContactLaw<P::Real, Memory = M>>(
+        &mut self,
+        candidates: &Candidates,
+        (surface, material): (&TriangleSurface, u32),
+        carrier: &mut impl Carrier,
+        spheres: &[Sphere<P>],
+        loads: &mut [Load<P::Real>],
+        step: &Step<L, P::Real>,
+        mut observe: impl FnMut(Seen),
+    ) where
+        M: Memory<P::Real>,
+    {
+        let mut pass = ContactLedger::default();
+        let mut now = Vec::with_capacity(self.remembered.len());
+        self.deepest = None;
+        for (near, triangles) in candidates.iter() {
+            let sphere = &spheres[near.index as usize];
+            let (radius, position) = (sphere.radius.to_f64(), centre(sphere));
+            let in_frame = carrier.place_in_frame(&position);
+            // 2. One contact for each smooth neighbourhood.
+            let touches = touches(surface, triangles, &in_frame, radius);
+            let normals: Vec<Vec3> = touches.iter().map(|t| normal_of(t, &in_frame, surface)).collect();
+            for (k, touch) in touches.iter().enumerate() {
+                // 3. What it remembers: the contact of this grain whose normal was nearest.
+                let normal_in_frame = normals[k];
+                let memory = recall(&self.remembered, near.id, &normals, k).unwrap_or_default();
+                // 4. The law.
+                let (point, normal) = (carrier.point(&touch.point), carrier.direction(&normal_in_frame));
+                let overlap = radius - touch.distance;
+                let velocity = carrier.velocity(touch, &point);
+                let spin = carrier.spin(touch, &normal);
+                let contact = contact(sphere, &normal, overlap, [&velocity, &spin], step.time_step);
+                let pair = step.table.pair(sphere.material, material);
+                let (response, memory) = step.law.respond(&contact, pair, memory);
+                now.push(Remembered { id: near.id, normal: normal_in_frame, memory });
+                // 5. Equal and opposite forces at one point.
+                let force = contact.normal * response.normal_force + response.tangential_force;
+                let arm = P::Real::from_f64(-touch.distance);
+                loads[near.index as usize].add(force, contact.normal.cross(response.tangential_force) * arm);
+                let force = force.cast::<f64>();
+                let on_surface = -Vec3::new(force.x, force.y, force.z);
+                carrier.receive(touch, &point, on_surface);
+                observe(Seen { grain: near.id, point, force: on_surface });
+                pass.add(&response.energy, step.time_step);
+                let separated = contact.velocity.dot(contact.normal).to_f64() * step.time_step;
+                // 6. A centre that was on the other side before this step has passed through the surface.
+                let has_passed = separated > touch.distance;
+                let depth = if has_passed { 1.0 + touch.distance / radius } else { overlap / radius };
+                if self.deepest.is_none_or(|deepest| depth > deepest.depth) {
+                    self.deepest = Some(Deepest { grain: near.id, position, depth });
+                }
+            }
+        }
+        self.remembered = now;
+        self.ledger.record(&pass);
+    }
+}
+
+/// Unit vector from the point of a touch to the centre, in the frame; the triangle's own normal where they coincide.
+fn normal_of(touch: &Touch, centre: &Vec3, surface: &TriangleSurface) -> Vec3 {
+    (centre - touch.point).try_normalize(0.0).unwrap_or_else(|| surface.normal(touch.triangle as usize))
+}
+
+/// Memory of the contact of grain `id` whose normal was nearest to `normals[k]`, among those that no other of the grain's
+/// present contacts is nearer to: one memory has one heir.
+fn recall<M: Copy>(remembered: &[Remembered<M>], id: u32, normals: &[Vec3], k: usize) -> Option<M> {
+    let is_heir = |normal: &Vec3| {
+        let mine = normals[k].dot(normal);
+        (normals.iter().enumerate())
+            .all(|(other, n)| other == k || n.dot(normal) < mine || (n.dot(normal) == mine && k < other))
+    };
+    let first = remembered.partition_point(|contact| contact.id < id);
+    remembered[first..]
+        .iter()
+        .take_while(|contact| contact.id == id)
+        .map(|contact| (contact.normal.dot(&normals[k]), contact))
+        .filter(|(likeness, contact)| *likeness > SAME_CONTACT && is_heir(&contact.normal))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, contact)| contact.memory)
+}
+
+/// The contact as the law sees it, in the precision of the bed; `velocity` and `spin` are those of the surface.
+fn contact<P: Precision>(
+    sphere: &Sphere<P>,
+    normal: &Vec3,
+    overlap: f64,
+    [velocity, spin]: [&Vec3; 2],
+    time_step: f64,
+) -> Contact<P::Real> {
+    let narrow = |v: &Vec3| Vector::new(v.x, v.y, v.z).cast::<P::Real>();
+    let real = P::Real::from_f64;
+    let normal = narrow(normal);
+    let arm = real(sphere.radius.to_f64() - overlap);
+    let velocity = sphere.velocity - (sphere.spin * arm).cross(normal) - narrow(velocity);
+    Contact {
+        overlap: real(overlap),
+        normal,
+        velocity,
+        normal_spin: real(0.5) * (sphere.spin + narrow(spin)).dot(normal),
+        effective_radius: real(sphere.radius.to_f64()),
+        effective_mass: sphere.mass,
+        time_step: real(time_step),
+    }
+}

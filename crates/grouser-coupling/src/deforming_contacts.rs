@@ -1,0 +1,173 @@
+//! Contacts between grains and the surface of a solid that deforms.
+
+use crate::candidates::{Candidates, Margin};
+use crate::closest_point::natural_coordinates;
+use crate::contact_pass::{Carrier, Contacts, Deepest, Seen, Step};
+use crate::mirror::Mirror;
+use crate::neighbourhood::Touch;
+use grouser_contact::{ContactLaw, ContactLedger, Load, Memory, Precision, Sphere};
+use grouser_geometry::{TriangleSurface, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// Contacts of the deforming surface of one solid with the grains of one bed, and what they remember.
+///
+/// Each step: [`Self::follow`] brings the surface to the nodes, [`Self::forces`] loads the grains, [`Self::spread`] gives
+/// the opposite forces to the nodes.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "M: Serialize + serde::de::DeserializeOwned")]
+pub struct DeformingContacts<M> {
+    mirror: Mirror,
+    /// The surface as it is now, in the world.
+    surface: TriangleSurface,
+    /// Velocity of each vertex [m/s].
+    velocity: Vec<Vec3>,
+    /// Force on each vertex in the last step [N].
+    force: Vec<Vec3>,
+    /// What any vertex has moved since the forces were asked for [m].
+    moved: f64,
+    material: u32,
+    margin: Margin,
+    candidates: Candidates,
+    contacts: Contacts<M>,
+}
+
+/// A surface that moves with its vertices and gives them the forces.
+struct Deforming<'a> {
+    surface: &'a TriangleSurface,
+    velocity: &'a [Vec3],
+    force: &'a mut [Vec3],
+}
+
+impl Deforming<'_> {
+    fn vertices(&self, touch: &Touch) -> [usize; 3] {
+        self.surface.triangles[touch.triangle as usize].map(|vertex| vertex as usize)
+    }
+}
+
+impl Carrier for Deforming<'_> {
+    fn place_in_frame(&self, place: &Vec3) -> Vec3 {
+        *place
+    }
+    fn point(&self, in_frame: &Vec3) -> Vec3 {
+        *in_frame
+    }
+    fn direction(&self, in_frame: &Vec3) -> Vec3 {
+        *in_frame
+    }
+    fn velocity(&self, touch: &Touch, point: &Vec3) -> Vec3 {
+        let weights = natural_coordinates(point, &self.surface.corners(touch.triangle as usize));
+        let vertices = self.vertices(touch);
+        (0..3).fold(Vec3::zeros(), |sum, k| sum + self.velocity[vertices[k]] * weights[k])
+    }
+    /// Half of the curl of the triangle's velocity about its normal: ω·n = Σ v_k·(x_(k+1) − x_(k+2)) / (4 A).
+    fn spin(&self, touch: &Touch, normal: &Vec3) -> Vec3 {
+        let corners = self.surface.corners(touch.triangle as usize);
+        let vertices = self.vertices(touch);
+        let area = self.surface.area_vector(touch.triangle as usize).norm();
+        if area == 0.0 {
+            return Vec3::zeros();
+        }
+        let circulation: f64 = (0..3)
+            .map(|k| self.velocity[vertices[k]].dot(&(corners[(k + 1) % 3] - corners[(k + 2) % 3])))
+            .sum();
+        normal * (circulation / (4.0 * area))
+    }
+    /// Shares the force out by natural coordinates (P0 Eq. 42).
+    fn receive(&mut self, touch: &Touch, point: &Vec3, force: Vec3) {
+        let weights = natural_coordinates(point, &self.surface.corners(touch.triangle as usize));
+        for (vertex, weight) in self.vertices(touch).into_iter().zip(weights) {
+            self.force[vertex] += force * weight;
+        }
+    }
+}
+
+impl<M> DeformingContacts<M> {
+    /// No contacts yet of the surface that `mirror` makes of the nodes, which lie at `position(node)` [m]; made of row
+    /// `material` of the material table.
+    pub fn new(mirror: Mirror, position: impl Fn(u32) -> Vec3, material: u32, margin: Margin) -> Self {
+        let vertices: Vec<Vec3> = (0..mirror.n_vertices()).map(|v| mirror.at_vertex(v, &position)).collect();
+        Self {
+            velocity: vec![Vec3::zeros(); vertices.len()],
+            force: vec![Vec3::zeros(); vertices.len()],
+            surface: TriangleSurface { vertices, triangles: mirror.triangles().to_vec() },
+            mirror,
+            moved: 0.0,
+            material,
+            margin,
+            candidates: Candidates::default(),
+            contacts: Contacts::default(),
+        }
+    }
+
+    /// Brings the surface to where the nodes are now [m], moving as they do [m/s].
+    pub fn follow(&mut self, position: impl Fn(u32) -> Vec3, velocity: impl Fn(u32) -> Vec3) {
+        let mut moved = 0.0_f64;
+        for vertex in 0..self.mirror.n_vertices() {
+            let place = self.mirror.at_vertex(vertex, &position);
+            let before = std::mem::replace(&mut self.surface.vertices[vertex], place);
+            moved = moved.max((place - before).norm());
+            self.velocity[vertex] = self.mirror.at_vertex(vertex, &velocity);
+        }
+        self.moved += moved;
+        self.candidates.surface_has_deformed();
+    }
+
+    /// Forces of one step: adds to the `loads` of the grains; the opposite forces wait for [`Self::spread`].
+    ///
+    /// `ids` are the permanent numbers of the grains; results do not depend on the order in which grains are stored. R* and m* are
+    /// those of the grain, and the contact point lies on the surface.
+    pub fn forces<P: Precision, L: ContactLaw<P::Real, Memory = M>>(
+        &mut self,
+        (spheres, ids): (&[Sphere<P>], &[u32]),
+        loads: &mut [Load<P::Real>],
+        step: &Step<L, P::Real>,
+        observe: impl FnMut(Seen),
+    ) where
+        M: Memory<P::Real>,
+    {
+        // 1. Grains near the surface.
+        let travel = step.fastest * step.time_step + std::mem::take(&mut self.moved);
+        self.candidates.refresh(&self.surface, |place| *place, (spheres, ids), travel, self.margin);
+        // 2. to 6.
+        self.force.fill(Vec3::zeros());
+        let mut carrier =
+            Deforming { surface: &self.surface, velocity: &self.velocity, force: &mut self.force };
+        let surface = (&self.surface, self.material);
+        self.contacts.pass(&self.candidates, surface, &mut carrier, spheres, loads, step, observe);
+    }
+
+    /// Gives the forces of the last step to the nodes: calls `add(node, force)` [N], in an order that is always the same.
+    pub fn spread(&self, add: impl FnMut(u32, Vec3)) {
+        self.mirror.spread(&self.force, add);
+    }
+
+    /// The surface as it was last brought to the nodes.
+    pub fn surface(&self) -> &TriangleSurface {
+        &self.surface
+    }
+
+    /// Force on each vertex of the surface in the last step [N].
+    pub fn vertex_forces(&self) -> &[Vec3] {
+        &self.force
+    }
+
+    /// Number of contacts of the last step.
+    pub fn n_contacts(&self) -> usize {
+        self.contacts.n_contacts()
+    }
+
+    /// How often the hierarchy was refitted and asked.
+    pub fn n_refits(&self) -> u64 {
+        self.candidates.n_refreshes()
+    }
+
+    /// Energy of the contacts since the beginning.
+    pub fn ledger(&self) -> &ContactLedger {
+        &self.contacts.ledger
+    }
+
+    /// The deepest contact of the last step.
+    pub fn deepest(&self) -> Option<Deepest> {
+        self.contacts.deepest
+    }
+}
