@@ -3,6 +3,7 @@
 use grouser_geometry::Vec3;
 
 use crate::element_blocks::{Block, Group, MAX_LOCAL_NODES};
+use crate::internal_force::BlockResult;
 use crate::law::ElasticLaw;
 use crate::number::{LANES, Lanes, Real};
 use crate::tensor::Tensor;
@@ -51,7 +52,7 @@ pub(crate) fn forces<
     beta: f64,
     groups: &[Group<E, Q>],
     scratch: &mut Scratch,
-) -> f64 {
+) -> BlockResult {
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx512f")]
@@ -60,7 +61,7 @@ pub(crate) fn forces<
             beta: f64,
             groups: &[Group<E, Q>],
             scratch: &mut Scratch,
-        ) -> f64 {
+        ) -> BlockResult {
             group_forces::<L, E, Q, AVERAGED, VISCOUS>(law, beta, groups, scratch)
         }
         #[target_feature(enable = "avx2")]
@@ -75,7 +76,7 @@ pub(crate) fn forces<
             beta: f64,
             groups: &[Group<E, Q>],
             scratch: &mut Scratch,
-        ) -> f64 {
+        ) -> BlockResult {
             group_forces::<L, E, Q, AVERAGED, VISCOUS>(law, beta, groups, scratch)
         }
         if is_x86_feature_detected!("avx512f") {
@@ -96,8 +97,9 @@ fn group_forces<L: ElasticLaw, const E: usize, const Q: usize, const AVERAGED: b
     beta: f64,
     groups: &[Group<E, Q>],
     scratch: &mut Scratch,
-) -> f64 {
+) -> BlockResult {
     let mut smallest_ratio = Lanes::constant(f64::INFINITY);
+    let mut viscous_power = Lanes::constant(0.0);
     for group in groups {
         let displacement = differences(group, &scratch.displacement);
         let velocity = if VISCOUS { differences(group, &scratch.velocity) } else { displacement };
@@ -116,8 +118,10 @@ fn group_forces<L: ElasticLaw, const E: usize, const Q: usize, const AVERAGED: b
             };
             let mut stress = response.stress_at_constant_volume + response.volume_gradient.times(pressure);
             if VISCOUS {
-                stress = stress
-                    + law.viscous_stress(&gradient, &gradient_of(&velocity, &group.gradients[q]), beta);
+                let rate = gradient_of(&velocity, &group.gradients[q]);
+                let viscous = law.viscous_stress(&gradient, &rate, beta);
+                viscous_power = viscous_power + viscous.dot(&rate) * group.weights[q];
+                stress = stress + viscous;
             }
             // 5. Nodal forces -V P grad N_i.
             for i in 0..E {
@@ -137,7 +141,7 @@ fn group_forces<L: ElasticLaw, const E: usize, const Q: usize, const AVERAGED: b
             smallest = ratio;
         }
     }
-    smallest
+    BlockResult { smallest_ratio: smallest, viscous_power: viscous_power.sum() }
 }
 
 /// u_i − u_0 of nodes 1…E.

@@ -1,28 +1,44 @@
 //! Explicit central differences (P0 Eq. 32) as velocity Verlet; numbers of `docs/theory/elastic_solids.md`.
 
 use grouser_geometry::Vec3;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::element_state::ElementStates;
 use crate::internal_force::Viscosity;
-use crate::solid::{Solid, State};
+use crate::material::Formulation;
+use crate::node_pass::NodePass;
+use crate::solid::{Solid, State, Support};
 
 /// Steps between two looks at the energy.
 const WATCH_INTERVAL: u64 = 64;
 
-/// Work and dissipation since the first step [J].
+/// Work and dissipation since the first step [J], by the trapezoidal rule.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
     /// Kinetic plus strain energy at the first step.
     pub initial: f64,
-    /// Work of gravity, pressures and applied forces.
+    /// Work of gravity, pressures, applied forces and the forces of a turning frame.
     pub external_work: f64,
-    /// Work of the supports.
+    /// Work of the supports, also on the held nodes themselves.
     pub support_work: f64,
     /// Dissipated by damping proportional to mass.
     pub mass_damping: f64,
+    /// Dissipated by damping proportional to stiffness.
+    pub stiffness_damping: f64,
     /// Sum of the magnitudes of all work: what the energy is held against.
     pub throughput: f64,
+    /// Power of the external forces at the end of the last step [W].
+    pub external_power: f64,
+    /// Power that damping takes at the end of the last step, by mass and by stiffness [W].
+    pub damping_power: [f64; 2],
+}
+
+impl Ledger {
+    /// Energy that should be there: what was at the start plus work minus dissipation [J].
+    pub fn expected_energy(&self) -> f64 {
+        self.initial + self.external_work + self.support_work - self.mass_damping - self.stiffness_damping
+    }
 }
 
 /// Why a step failed; the state is then useless, return to a checkpoint.
@@ -88,21 +104,34 @@ impl Solid {
         if !self.is_started {
             self.start()?;
         }
+        let is_parallel = self.elements.is_worth_threads();
         let State { displacement, velocity, acceleration, supports, .. } = &mut self.state;
-        for ((u, v), a) in displacement.iter_mut().zip(velocity.iter_mut()).zip(acceleration.iter()) {
+        let drift = |((u, v), a): ((&mut Vec3, &mut Vec3), &Vec3)| {
             // 1. v(n+1/2) = v(n) + dt/2 a(n)
             *v += a * (0.5 * dt);
             // 2. u(n+1) = u(n) + dt v(n+1/2)
             *u += *v * dt;
+        };
+        if is_parallel {
+            let nodes = displacement.par_iter_mut().zip(velocity.par_iter_mut()).zip(acceleration.par_iter());
+            nodes.with_min_len(4096).for_each(drift);
+        } else {
+            displacement.iter_mut().zip(velocity.iter_mut()).zip(acceleration.iter()).for_each(drift);
         }
+        let mut work = 0.0;
         for (&node, support) in supports.iter_mut() {
             let n = node as usize;
             for c in (0..3).filter(|&c| support.held[c]) {
+                // What the support spends on the held node itself.
+                let (before, after) = (velocity[n][c], support.velocity[c]);
+                work += 0.5 * self.nodal_mass[n] * (after * after - before * before);
                 support.displacement[c] += support.velocity[c] * dt;
                 displacement[n][c] = support.displacement[c];
                 velocity[n][c] = support.velocity[c];
             }
         }
+        self.state.ledger.support_work += work;
+        self.state.ledger.throughput += work.abs();
         self.state.time += dt;
         self.state.steps += 1;
         Ok(())
@@ -113,40 +142,30 @@ impl Solid {
     /// # Errors
     /// [`DynamicsError`].
     pub fn advance_velocities(&mut self, dt: f64) -> Result<(), DynamicsError> {
-        let external_power = self.accelerate()?;
-        let Ledger { external_work, support_work, mass_damping, throughput, .. } = &mut self.state.ledger;
-        let alpha = self.settings.mass_damping;
-        // 8. Work of this step by the forces at its end and the velocity of its middle.
-        let support_power: f64 = self
-            .state
-            .supports
-            .iter()
-            .zip(&self.state.reaction)
-            .map(|((&n, _), r)| r.dot(&self.state.velocity[n as usize]))
-            .sum();
-        let damping =
-            if alpha > 0.0 { 2.0 * alpha * self.mass.kinetic_energy(&self.state.velocity) } else { 0.0 };
-        *external_work += external_power * dt;
-        *support_work += support_power * dt;
-        *mass_damping += damping * dt;
-        *throughput += (external_power.abs() + support_power.abs()) * dt;
-        // 7. v(n+1) = v(n+1/2) + dt/2 a(n+1)
-        for (v, a) in self.state.velocity.iter_mut().zip(&self.state.acceleration) {
-            *v += a * (0.5 * dt);
-        }
+        let before = self.accelerate(0.5 * dt)?;
+        // 8. Work of this step: half of it with the forces and velocities at its start, half with those at its end.
+        let State { ledger, supports, reaction, .. } = &mut self.state;
+        let mean = |start: f64, end: f64| 0.5 * (start + end) * dt;
+        let work = mean(before.external_power, ledger.external_power);
+        let work_of =
+            |((r, support), old): ((&Vec3, &Support), &Vec3)| 0.5 * dt * (r + old).dot(&support.velocity);
+        let support_work: f64 =
+            reaction.iter().zip(supports.values()).zip(&self.last_reaction).map(work_of).sum();
+        ledger.external_work += work;
+        ledger.support_work += support_work;
+        ledger.throughput += work.abs() + support_work.abs();
+        ledger.mass_damping += mean(before.damping_power[0], ledger.damping_power[0]);
+        ledger.stiffness_damping += mean(before.damping_power[1], ledger.damping_power[1]);
         if self.state.steps.is_multiple_of(WATCH_INTERVAL) { self.watch(dt) } else { Ok(()) }
     }
 
-    /// Steps 3 to 6; returns the power of the external forces [W].
-    fn accelerate(&mut self) -> Result<f64, DynamicsError> {
-        let mut force = std::mem::take(&mut self.force);
-        force.resize(self.mesh.nodes.len(), Vec3::zeros());
-        force.fill(Vec3::zeros());
-        self.add_external_forces(1.0, &mut force);
-        let power = force.iter().zip(&self.state.velocity).map(|(f, v)| f.dot(v)).sum();
+    /// Steps 3 to 7; returns the ledger as it was before.
+    fn accelerate(&mut self, half_step: f64) -> Result<Ledger, DynamicsError> {
+        let before = self.state.ledger;
+        // 3. to 5. Forces of the elements.
         let beta = self.settings.stiffness_damping;
         let viscosity = (beta > 0.0).then_some(Viscosity { velocity: &self.state.velocity, beta });
-        self.elements.add_forces(&self.state.displacement, viscosity, &mut force).map_err(|i| {
+        let viscous_power = self.elements.update(&self.state.displacement, viscosity).map_err(|i| {
             DynamicsError::InvertedElement {
                 element: self.mesh.element_label(i.element),
                 volume_ratio: i.volume_ratio,
@@ -154,17 +173,41 @@ impl Solid {
                 step: self.state.steps,
             }
         })?;
-        let alpha = self.settings.mass_damping;
-        if alpha > 0.0 {
-            let mut momentum = vec![Vec3::zeros(); force.len()];
-            self.mass.multiply(&self.state.velocity, &mut momentum);
-            force.iter_mut().zip(&momentum).for_each(|(f, p)| *f -= p * alpha);
+        let mut distributed = std::mem::take(&mut self.force);
+        let has_distributed = !self.loads.pressures.is_empty() || self.loads.spin.is_turning();
+        if has_distributed {
+            distributed.resize(self.mesh.nodes.len(), Vec3::zeros());
+            distributed.fill(Vec3::zeros());
+            self.add_distributed_forces(1.0, &mut distributed);
         }
-        // 6. a = M^-1 f; held components do not accelerate, their supports take the force.
-        self.state.reaction = self.reactions_of(&force);
-        self.mass.solve(&force, &self.held_mask, &mut self.state.acceleration);
-        self.force = force;
-        Ok(power)
+        let is_attached = self.settings.formulation == Formulation::BodyAttached;
+        let State { velocity, acceleration, applied, supports, reaction, frame, .. } = &mut self.state;
+        let gravity = self.loads.gravity;
+        let pass = NodePass {
+            internal: self.elements.node_forces(),
+            applied,
+            distributed: has_distributed.then_some(&distributed[..]),
+            nodal_mass: &self.nodal_mass,
+            gravity: if is_attached { frame.rotation.inverse() * gravity } else { gravity },
+            spin: self.loads.spin.is_turning().then_some(self.loads.spin),
+            alpha: self.settings.mass_damping,
+            is_held: &self.held_mask,
+            is_parallel: self.elements.is_worth_threads(),
+        };
+        // 6. a = M^-1 f, 7. v(n+1) = v(n+1/2) + dt/2 a(n+1)
+        let power = pass.run(&self.mass, half_step, velocity, acceleration);
+        // Held components do not accelerate, their supports take the force.
+        std::mem::swap(&mut self.last_reaction, reaction);
+        reaction.clear();
+        reaction.extend(supports.iter().map(|(&n, support)| {
+            let force = pass.unbalanced(n as usize, &velocity[n as usize]);
+            Vec3::from_fn(|c, _| if support.held[c] { -force[c] } else { 0.0 })
+        }));
+        self.last_reaction.resize(reaction.len(), Vec3::zeros());
+        self.force = distributed;
+        self.state.ledger.external_power = power.external;
+        self.state.ledger.damping_power = [power.mass_damping, viscous_power];
+        Ok(before)
     }
 
     /// Goes on from a checkpoint of a solid of the same mesh, materials, settings and loads.
@@ -184,10 +227,11 @@ impl Solid {
 
     fn start(&mut self) -> Result<(), DynamicsError> {
         self.held_mask = self.held_components();
-        self.accelerate()?;
+        self.accelerate(0.0)?;
         self.is_started = true;
-        self.state.ledger =
-            Ledger { initial: self.kinetic_energy() + self.strain_energy(), ..Default::default() };
+        let Ledger { external_power, damping_power, .. } = self.state.ledger;
+        let initial = self.kinetic_energy() + self.strain_energy();
+        self.state.ledger = Ledger { initial, external_power, damping_power, ..Default::default() };
         Ok(())
     }
 
@@ -211,11 +255,10 @@ impl Solid {
     /// block its number, displacement, and force written and read; for every node the vectors of forces and of motion.
     pub fn bytes_per_step(&self) -> f64 {
         let passes = if self.is_pressure_averaged() { 2.0 } else { 1.0 };
-        // Number 4 + displacement 24 + force out 24 and in 24 + source 8.
-        let block_nodes = 84.0 * self.elements.n_block_nodes() as f64;
-        // Drift: v 48, u 48, a 24; loads: force 24, applied 24, mass 8, v 24; sum: force 48; accelerate: force 24, mass 8, a 24,
-        // mask 3; kick: v 48, a 24.
-        let nodes = 379.0 * self.mesh.nodes.len() as f64;
+        // Number 4 + displacement 24 + force out 24 and in 24 + place 4.
+        let block_nodes = 80.0 * self.elements.n_block_nodes() as f64;
+        // Drift: v 48, u 48, a 24; node pass: start 4, applied 24, mass 8, v 48, a 24, mask 3.
+        let nodes = 231.0 * self.mesh.nodes.len() as f64;
         passes * self.elements.element_bytes() as f64 + block_nodes + nodes
     }
 

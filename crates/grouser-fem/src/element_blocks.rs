@@ -45,9 +45,9 @@ pub(crate) struct Block<const E: usize, const Q: usize> {
 #[derive(Clone, Debug)]
 pub(crate) struct NodeGather {
     /// Range of `sources` of node n: `starts[n]..starts[n + 1]`.
-    pub starts: Vec<u32>,
-    /// (block, local node), in ascending order of the blocks.
-    pub sources: Vec<(u32, u32)>,
+    starts: Vec<u32>,
+    /// Places in the concatenated results of the blocks, in ascending order of the blocks.
+    sources: Vec<u32>,
 }
 
 /// Gradients [1/m] at a quadrature point, one for each node, and its reference volume [m³].
@@ -150,23 +150,31 @@ fn nodes_of(mesh: &TetrahedralMesh, elements: &[u32]) -> Vec<u32> {
 
 impl NodeGather {
     /// Sources of each of `n_nodes` nodes in blocks with the given local nodes.
-    pub fn new<'a>(n_nodes: usize, blocks: impl Iterator<Item = &'a [u32]>) -> Self {
-        let mut by_node: Vec<Vec<(u32, u32)>> = vec![Vec::new(); n_nodes];
-        for (b, nodes) in blocks.enumerate() {
-            for (local, &n) in nodes.iter().enumerate() {
-                by_node[n as usize].push((b as u32, local as u32));
-            }
+    pub fn new<'a>(n_nodes: usize, blocks: impl Iterator<Item = &'a [u32]> + Clone) -> Self {
+        let mut starts = vec![0; n_nodes + 1];
+        for &n in blocks.clone().flatten() {
+            starts[n as usize + 1] += 1;
         }
-        let mut starts = vec![0];
-        for sources in &by_node {
-            starts.push(starts[starts.len() - 1] + sources.len() as u32);
+        for n in 0..n_nodes {
+            starts[n + 1] += starts[n];
         }
-        Self { starts, sources: by_node.concat() }
+        let mut next = starts.clone();
+        let mut sources = vec![0; starts[n_nodes] as usize];
+        for (place, &n) in blocks.flatten().enumerate() {
+            sources[next[n as usize] as usize] = place as u32;
+            next[n as usize] += 1;
+        }
+        Self { starts, sources }
     }
 
-    /// Sources of node `n`.
+    /// Number of places.
+    pub fn n_sources(&self) -> usize {
+        self.sources.len()
+    }
+
+    /// Places of node `n`.
     #[inline]
-    pub fn of(&self, n: usize) -> &[(u32, u32)] {
+    pub fn of(&self, n: usize) -> &[u32] {
         &self.sources[self.starts[n] as usize..self.starts[n + 1] as usize]
     }
 }

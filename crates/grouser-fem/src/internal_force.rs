@@ -1,12 +1,12 @@
 //! Nodal forces of the elements' stresses: f_i = −∫ P ∇N_i dV (`docs/theory/elastic_solids.md`, steps 3 to 6).
 //!
-//! Blocks run in parallel, each into memory of its own; then every node adds its blocks' contributions in ascending order.
+//! Blocks run in parallel, each into memory of its own; every node then adds its blocks' contributions in ascending order.
 //! The order of all sums is fixed by the mesh: the same bits for any number of threads.
 
 use grouser_geometry::{ElementOrder, TetrahedralMesh, Vec3};
 use rayon::prelude::*;
 
-use crate::block_kernel::{Scratch, forces, gather, volume_changes};
+use crate::block_kernel::{self, Scratch, gather};
 use crate::element_blocks::{Block, NodeGather};
 use crate::law::Law;
 use crate::nodal_average::NodalAverage;
@@ -25,17 +25,41 @@ pub(crate) enum Elements {
 #[derive(Clone, Debug)]
 pub(crate) struct BlockSet<const E: usize, const Q: usize> {
     blocks: Vec<Block<E, Q>>,
-    outputs: Vec<Output>,
+    /// Forces of the local nodes, block after block [N].
+    forces: Vec<Vec3>,
+    /// V θ of the local nodes, block after block [m³]; empty without averages.
+    volume_changes: Vec<f64>,
+    results: Vec<BlockResult>,
     gather: NodeGather,
     average: Option<NodalAverage>,
 }
 
-/// What a block leaves behind: forces of its local nodes and its smallest volume ratio.
-#[derive(Clone, Debug, Default)]
-struct Output {
-    forces: Vec<Vec3>,
-    volume_changes: Vec<f64>,
-    smallest_ratio: f64,
+/// What a block leaves behind beside forces.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BlockResult {
+    /// Smallest volume ratio J; NaN wins.
+    pub smallest_ratio: f64,
+    /// Power that the viscous stress dissipates [W].
+    pub viscous_power: f64,
+}
+
+/// Internal forces of the nodes, of the last call of [`Elements::update`].
+#[derive(Clone, Copy)]
+pub(crate) struct NodeForces<'a> {
+    gather: &'a NodeGather,
+    forces: &'a [Vec3],
+}
+
+impl NodeForces<'_> {
+    /// Internal force of node `n` [N].
+    #[inline]
+    pub fn of(&self, n: usize) -> Vec3 {
+        let mut sum = Vec3::zeros();
+        for &place in self.gather.of(n) {
+            sum += self.forces[place as usize];
+        }
+        sum
+    }
 }
 
 /// Viscous part: stiffness-proportional damping β [s] with the nodal velocities.
@@ -62,10 +86,7 @@ impl Elements {
 
     /// Number of (block, node) pairs: nodes counted once for each block that touches them.
     pub fn n_block_nodes(&self) -> usize {
-        match self {
-            Self::Linear(set) => set.gather.sources.len(),
-            Self::Quadratic(set) => set.gather.sources.len(),
-        }
+        self.node_forces().gather.n_sources()
     }
 
     /// Memory of the groups' constants [bytes].
@@ -79,16 +100,31 @@ impl Elements {
         }
     }
 
-    /// Adds the internal forces [N] of the displacements [m] to `force`.
-    pub fn add_forces(
+    /// Computes the internal forces of the displacements [m]; returns the power of the viscous stress [W].
+    pub fn update(
         &mut self,
         displacement: &[Vec3],
         viscosity: Option<Viscosity<'_>>,
-        force: &mut [Vec3],
-    ) -> Result<(), Inversion> {
+    ) -> Result<f64, Inversion> {
         match self {
-            Self::Linear(set) => set.add_forces(displacement, viscosity, force),
-            Self::Quadratic(set) => set.add_forces(displacement, viscosity, force),
+            Self::Linear(set) => set.update(displacement, viscosity),
+            Self::Quadratic(set) => set.update(displacement, viscosity),
+        }
+    }
+
+    /// Forces of the last [`Self::update`].
+    pub fn node_forces(&self) -> NodeForces<'_> {
+        match self {
+            Self::Linear(set) => NodeForces { gather: &set.gather, forces: &set.forces },
+            Self::Quadratic(set) => NodeForces { gather: &set.gather, forces: &set.forces },
+        }
+    }
+
+    /// Whether the solid is large enough for threads to pay.
+    pub fn is_worth_threads(&self) -> bool {
+        match self {
+            Self::Linear(set) => is_worth_threads(set.blocks.len()),
+            Self::Quadratic(set) => is_worth_threads(set.blocks.len()),
         }
     }
 }
@@ -96,45 +132,47 @@ impl Elements {
 impl<const E: usize, const Q: usize> BlockSet<E, Q> {
     fn new(mesh: &TetrahedralMesh, laws: &[Law], is_averaged: bool) -> Self {
         let blocks: Vec<Block<E, Q>> = Block::of_mesh(mesh, laws);
-        let outputs = blocks
-            .iter()
-            .map(|b| Output { forces: vec![Vec3::zeros(); b.nodes.len()], ..Default::default() })
-            .collect();
         let gather = NodeGather::new(mesh.nodes.len(), blocks.iter().map(|b| &b.nodes[..]));
-        let average = is_averaged.then(|| NodalAverage::new(&blocks, laws));
-        let mut set = Self { blocks, outputs, gather, average };
-        if let Some(average) = &mut set.average {
-            for (block, output) in set.blocks.iter().zip(&mut set.outputs) {
-                output.volume_changes = vec![0.0; block.nodes.len()];
+        let mut average = is_averaged.then(|| NodalAverage::new(&blocks, laws));
+        let n_places = gather.n_sources();
+        let mut volume_changes = Vec::new();
+        if let Some(average) = &mut average {
+            volume_changes.resize(n_places, 0.0);
+            let mut first_place = 0;
+            for block in &blocks {
+                let own = &mut volume_changes[first_place..first_place + block.nodes.len()];
                 for group in &block.groups {
                     for lane in 0..LANES {
                         let quarter = group.weights[0].0[lane] / 4.0;
-                        output.volume_changes[group.first[lane] as usize] += quarter;
-                        group.others.iter().for_each(|o| output.volume_changes[o[lane] as usize] += quarter);
+                        own[group.first[lane] as usize] += quarter;
+                        group.others.iter().for_each(|o| own[o[lane] as usize] += quarter);
                     }
                 }
+                first_place += block.nodes.len();
             }
-            average.set_volume(&volume_parts(&set.outputs));
+            average.set_volume(&volume_changes);
         }
-        set
+        let results = vec![BlockResult { smallest_ratio: 1.0, viscous_power: 0.0 }; blocks.len()];
+        Self { blocks, forces: vec![Vec3::zeros(); n_places], volume_changes, results, gather, average }
     }
 
-    fn add_forces(
-        &mut self,
-        displacement: &[Vec3],
-        viscosity: Option<Viscosity<'_>>,
-        force: &mut [Vec3],
-    ) -> Result<(), Inversion> {
-        if let Some(average) = &mut self.average {
-            for_each_block(&self.blocks, &mut self.outputs, |_, block, output, scratch| {
+    fn update(&mut self, displacement: &[Vec3], viscosity: Option<Viscosity<'_>>) -> Result<f64, Inversion> {
+        let Self { blocks, forces, volume_changes, results, average, .. } = self;
+        let is_parallel = is_worth_threads(blocks.len());
+        if let Some(average) = average {
+            let work = |_, block: &Block<E, Q>, changes: &mut [f64], scratch: &mut Scratch| {
                 gather(&block.nodes, displacement, &mut scratch.displacement);
-                with_law!(block.law, |law| volume_changes(law, block, scratch));
-                output.volume_changes.copy_from_slice(&scratch.scalar[..block.nodes.len()]);
-            });
-            average.update_pressure(&volume_parts(&self.outputs));
+                with_law!(block.law, |law| block_kernel::volume_changes(law, block, scratch));
+                changes.copy_from_slice(&scratch.scalar[..block.nodes.len()]);
+            };
+            for_each_block(blocks, split_by_block(blocks, volume_changes), work);
+            average.update_pressure(volume_changes, is_parallel);
         }
-        let average = self.average.as_ref();
-        for_each_block(&self.blocks, &mut self.outputs, |b, block, output, scratch| {
+        let average = average.as_ref();
+        let work = |b: usize,
+                    block: &Block<E, Q>,
+                    (forces, result): (&mut [Vec3], &mut BlockResult),
+                    scratch: &mut Scratch| {
             let n_local = block.nodes.len();
             gather(&block.nodes, displacement, &mut scratch.displacement);
             scratch.force[..n_local].fill([0.0; 4]);
@@ -147,33 +185,24 @@ impl<const E: usize, const Q: usize> BlockSet<E, Q> {
             if let Some(viscosity) = viscosity {
                 gather(&block.nodes, viscosity.velocity, &mut scratch.velocity);
             }
-            output.smallest_ratio =
-                with_law!(block.law, |law| match (average.is_some(), viscosity.is_some()) {
-                    (false, false) => forces::<_, E, Q, false, false>(law, beta, &block.groups, scratch),
-                    (false, true) => forces::<_, E, Q, false, true>(law, beta, &block.groups, scratch),
-                    (true, false) => forces::<_, E, Q, true, false>(law, beta, &block.groups, scratch),
-                    (true, true) => forces::<_, E, Q, true, true>(law, beta, &block.groups, scratch),
-                });
-            for (f, s) in output.forces.iter_mut().zip(scratch.force.iter()) {
+            let groups = &block.groups;
+            *result = with_law!(block.law, |law| match (average.is_some(), viscosity.is_some()) {
+                (false, false) => block_kernel::forces::<_, E, Q, false, false>(law, beta, groups, scratch),
+                (false, true) => block_kernel::forces::<_, E, Q, false, true>(law, beta, groups, scratch),
+                (true, false) => block_kernel::forces::<_, E, Q, true, false>(law, beta, groups, scratch),
+                (true, true) => block_kernel::forces::<_, E, Q, true, true>(law, beta, groups, scratch),
+            });
+            for (f, s) in forces.iter_mut().zip(scratch.force.iter()) {
                 *f = Vec3::new(s[0], s[1], s[2]);
             }
-        });
+        };
+        let parts = split_by_block(blocks, forces).into_iter().zip(results.iter_mut()).collect();
+        for_each_block(blocks, parts, work);
         // Not "> 0" turned around: a NaN must count as inverted too.
-        if let Some(b) = self.outputs.iter().position(|o| !(o.smallest_ratio > 0.0)) {
+        if let Some(b) = self.results.iter().position(|r| !(r.smallest_ratio > 0.0)) {
             return Err(self.find_inversion(b, displacement));
         }
-        let (gather, outputs) = (&self.gather, &self.outputs);
-        let sum = |(n, f): (usize, &mut Vec3)| {
-            for &(block, local) in gather.of(n) {
-                *f += outputs[block as usize].forces[local as usize];
-            }
-        };
-        if is_worth_threads(self.blocks.len()) {
-            force.par_iter_mut().with_min_len(4096).enumerate().for_each(sum);
-        } else {
-            force.iter_mut().enumerate().for_each(sum);
-        }
-        Ok(())
+        Ok(self.results.iter().map(|r| r.viscous_power).sum())
     }
 
     /// Element of the smallest volume ratio of block `b`.
@@ -200,29 +229,38 @@ impl<const E: usize, const Q: usize> BlockSet<E, Q> {
     }
 }
 
-fn volume_parts(outputs: &[Output]) -> Vec<&[f64]> {
-    outputs.iter().map(|o| &o.volume_changes[..]).collect()
-}
-
 /// Starting threads costs more than a few blocks of work.
-pub(crate) fn is_worth_threads(n_blocks: usize) -> bool {
+fn is_worth_threads(n_blocks: usize) -> bool {
     n_blocks >= 4
 }
 
-fn for_each_block<const E: usize, const Q: usize>(
+/// The parts of concatenated results that belong to the blocks.
+fn split_by_block<'a, T, const E: usize, const Q: usize>(
     blocks: &[Block<E, Q>],
-    outputs: &mut [Output],
-    work: impl Fn(usize, &Block<E, Q>, &mut Output, &mut Scratch) + Sync + Send,
+    mut all: &'a mut [T],
+) -> Vec<&'a mut [T]> {
+    let next = |block: &Block<E, Q>| {
+        let (own, rest) = std::mem::take(&mut all).split_at_mut(block.nodes.len());
+        all = rest;
+        own
+    };
+    blocks.iter().map(next).collect()
+}
+
+fn for_each_block<T: Send, const E: usize, const Q: usize>(
+    blocks: &[Block<E, Q>],
+    outputs: Vec<T>,
+    work: impl Fn(usize, &Block<E, Q>, T, &mut Scratch) + Sync + Send,
 ) {
     thread_local! {
         static SCRATCH: std::cell::RefCell<Scratch> = std::cell::RefCell::new(Scratch::new());
     }
-    let run = |(b, (block, output)): (usize, (&Block<E, Q>, &mut Output))| {
+    let run = |(b, (block, output)): (usize, (&Block<E, Q>, T))| {
         SCRATCH.with_borrow_mut(|scratch| work(b, block, output, scratch));
     };
     if is_worth_threads(blocks.len()) {
-        blocks.par_iter().zip(outputs.par_iter_mut()).enumerate().for_each(run);
+        blocks.par_iter().zip(outputs).enumerate().for_each(run);
     } else {
-        blocks.iter().zip(outputs.iter_mut()).enumerate().for_each(run);
+        blocks.iter().zip(outputs).enumerate().for_each(run);
     }
 }

@@ -54,7 +54,9 @@ pub mod law;
 mod loads;
 mod mass;
 mod material;
+mod motion;
 mod nodal_average;
+mod node_pass;
 pub mod number;
 mod polar;
 mod solid;
@@ -65,7 +67,7 @@ pub mod verification;
 
 pub use dynamics::{DynamicsError, Ledger};
 pub use fields::ElementFields;
-pub use loads::{Loads, Pressure};
+pub use loads::{Loads, Pressure, Spin};
 pub use mass::MassKind;
 pub use material::{Elasticity, Formulation, Material, MaterialError};
 pub use solid::{Settings, Solid, SolidError, State, Support, VolumetricTreatment};

@@ -11,8 +11,34 @@ use crate::statics::BlockMatrix;
 pub struct Loads {
     /// Acceleration of gravity in the world frame [m/s²].
     pub gravity: Vec3,
+    /// Turning of the solid's frame.
+    pub spin: Spin,
     /// Pressures on surfaces.
     pub pressures: Vec<Pressure>,
+}
+
+/// How the solid's frame turns about its origin: the source of centrifugal, Euler's and Coriolis' forces.
+///
+/// An accelerated origin is a gravity: subtract its acceleration from [`Loads::gravity`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Spin {
+    /// Angular velocity ω in the solid's frame [rad/s].
+    pub angular_velocity: Vec3,
+    /// Its rate of change ω' in the solid's frame [rad/s²].
+    pub angular_acceleration: Vec3,
+}
+
+impl Spin {
+    /// Whether there is anything to add.
+    pub(crate) fn is_turning(&self) -> bool {
+        self.angular_velocity != Vec3::zeros() || self.angular_acceleration != Vec3::zeros()
+    }
+
+    /// Acceleration −ω' × x − ω × (ω × x) of what rests in the frame at `x` [m/s²].
+    pub fn acceleration_at(&self, x: &Vec3) -> Vec3 {
+        let w = self.angular_velocity;
+        -self.angular_acceleration.cross(x) - w.cross(&w.cross(x))
+    }
 }
 
 /// Pressure on some facets; it follows them where the formulation rotates.

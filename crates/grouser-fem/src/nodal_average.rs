@@ -4,7 +4,6 @@
 use rayon::prelude::*;
 
 use crate::element_blocks::{Block, NodeGather};
-use crate::internal_force::is_worth_threads;
 use crate::law::{ElasticLaw, Law};
 use crate::with_law;
 
@@ -38,29 +37,27 @@ impl NodalAverage {
         Self { node_volume: Vec::new(), pressure: vec![0.0; pairs.len()], slot_law, slots, gather }
     }
 
-    /// Sets the volumes of the slots from the quarters of their elements' volumes.
-    pub fn set_volume(&mut self, parts: &[&[f64]]) {
-        self.node_volume = self.sums(parts);
-    }
-
-    fn sums(&self, parts: &[&[f64]]) -> Vec<f64> {
-        let sum = |slot: usize| -> f64 {
-            self.gather.of(slot).iter().map(|&(b, l)| parts[b as usize][l as usize]).sum()
-        };
-        (0..self.slot_law.len()).map(sum).collect()
+    /// Sets the volumes of the slots from the quarters of their elements' volumes, block after block.
+    pub fn set_volume(&mut self, parts: &[f64]) {
+        self.node_volume = (0..self.slot_law.len()).map(|slot| sum_of(&self.gather, parts, slot)).collect();
     }
 
     /// Pressure of each slot from its blocks' V θ.
-    pub fn update_pressure(&mut self, parts: &[&[f64]]) {
+    pub fn update_pressure(&mut self, parts: &[f64], is_parallel: bool) {
         let (gather, volume, law) = (&self.gather, &self.node_volume, &self.slot_law);
         let update = |(slot, pressure): (usize, &mut f64)| {
-            let sum: f64 = gather.of(slot).iter().map(|&(b, l)| parts[b as usize][l as usize]).sum();
-            *pressure = with_law!(law[slot], |l| l.pressure(sum / volume[slot]));
+            let change = sum_of(gather, parts, slot) / volume[slot];
+            *pressure = with_law!(law[slot], |l| l.pressure(change));
         };
-        if is_worth_threads(parts.len()) {
+        if is_parallel {
             self.pressure.par_iter_mut().with_min_len(4096).enumerate().for_each(update);
         } else {
             self.pressure.iter_mut().enumerate().for_each(update);
         }
     }
+}
+
+#[inline]
+fn sum_of(gather: &NodeGather, parts: &[f64], slot: usize) -> f64 {
+    gather.of(slot).iter().map(|&place| parts[place as usize]).sum()
 }

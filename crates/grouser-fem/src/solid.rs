@@ -65,7 +65,7 @@ pub struct State {
     pub applied: Vec<Vec3>,
     /// Supports by node.
     pub supports: BTreeMap<u32, Support>,
-    /// Force of each support, in the order of the supports [N].
+    /// Force of each support on what it holds, in the order of the supports, without what accelerates the held node itself [N].
     pub reaction: Vec<Vec3>,
     /// Frame of a body-attached solid in the world.
     pub frame: Pose,
@@ -82,12 +82,13 @@ pub struct Solid {
     pub(crate) elements: Elements,
     pub(crate) mass: Mass,
     pub(crate) nodal_mass: Vec<f64>,
-    /// Gravity and pressures.
+    /// Gravity, spin of the frame and pressures.
     pub loads: Loads,
     /// What changes with time; a checkpoint is this alone.
     pub state: State,
-    /// Working memory of a step: forces, and which components are held.
+    /// Working memory of a step: forces of pressures, reactions at its start, and which components are held.
     pub(crate) force: Vec<Vec3>,
+    pub(crate) last_reaction: Vec<Vec3>,
     pub(crate) held_mask: Vec<[bool; 3]>,
     /// Whether accelerations belong to the present state.
     pub(crate) is_started: bool,
@@ -189,6 +190,7 @@ impl Solid {
             loads: Loads::default(),
             state,
             force: Vec::new(),
+            last_reaction: Vec::new(),
             held_mask: Vec::new(),
             is_started: false,
         })
@@ -297,7 +299,7 @@ impl Solid {
         held
     }
 
-    /// Adds gravity, pressures and applied forces, times `fraction` [N].
+    /// Adds gravity, pressures, applied forces and those of a turning frame, times `fraction` [N].
     pub(crate) fn add_external_forces(&self, fraction: f64, force: &mut [Vec3]) {
         let gravity = match self.settings.formulation {
             Formulation::BodyAttached => self.state.frame.rotation.inverse() * self.loads.gravity,
@@ -305,6 +307,20 @@ impl Solid {
         };
         for ((f, applied), mass) in force.iter_mut().zip(&self.state.applied).zip(&self.nodal_mass) {
             *f += fraction * (applied + gravity * *mass);
+        }
+        self.add_distributed_forces(fraction, force);
+    }
+
+    /// Adds the forces of pressures and of a turning frame, times `fraction` [N].
+    pub(crate) fn add_distributed_forces(&self, fraction: f64, force: &mut [Vec3]) {
+        if self.loads.spin.is_turning() {
+            let is_attached = self.settings.formulation == Formulation::BodyAttached;
+            let place = |n: usize| if is_attached { self.mesh.nodes[n] } else { self.position(n as u32) };
+            let acceleration: Vec<Vec3> =
+                (0..force.len()).map(|n| self.loads.spin.acceleration_at(&place(n)) * fraction).collect();
+            let mut inertia = vec![Vec3::zeros(); force.len()];
+            self.mass.multiply(&acceleration, &mut inertia);
+            force.iter_mut().zip(&inertia).for_each(|(f, i)| *f += i);
         }
         for load in &self.loads.pressures {
             // In the linear formulation the frame turns, not the facets.

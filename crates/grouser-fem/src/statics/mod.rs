@@ -7,7 +7,7 @@ mod nested_dissection;
 mod sparse_cholesky;
 
 use grouser_geometry::Vec3;
-use grouser_geometry::nalgebra::DMatrix;
+use grouser_geometry::nalgebra::{DMatrix, Matrix3};
 use serde::{Deserialize, Serialize};
 
 pub use block_matrix::BlockMatrix;
@@ -205,10 +205,12 @@ impl Solid {
         let mut external = vec![Vec3::zeros(); n];
         self.add_external_forces(fraction, &mut external);
         let mut internal = vec![Vec3::zeros(); n];
-        self.elements.add_forces(&self.state.displacement, None, &mut internal).map_err(|i| {
+        self.elements.update(&self.state.displacement, None).map_err(|i| {
             let element = self.mesh.element_label(i.element);
             StaticError::InvertedElement { element, volume_ratio: i.volume_ratio, fraction }
         })?;
+        let forces = self.elements.node_forces();
+        internal.iter_mut().enumerate().for_each(|(i, f)| *f = forces.of(i));
         let norm = |f: &[Vec3]| f.iter().map(Vec3::norm_squared).sum::<f64>().sqrt();
         let scale = norm(&external).max(norm(&internal));
         Ok((external.iter().zip(&internal).map(|(e, i)| e + i).collect(), scale))
@@ -253,6 +255,12 @@ impl Solid {
             }
         }
         if self.settings.formulation != Formulation::BodyAttached {
+            // Centrifugal forces grow with the position: −m (ω × (ω × u)) = m (ω² − ω ωᵀ) u.
+            let w = self.loads.spin.angular_velocity;
+            let softening = w * w.transpose() - Matrix3::identity() * w.norm_squared();
+            for (i, mass) in self.nodal_mass.iter().enumerate().filter(|_| w != Vec3::zeros()) {
+                *k.block_mut(i, i) += softening * (fraction * mass);
+            }
             for load in &self.loads.pressures {
                 load.add_stiffness(&self.mesh, |n| self.position(n), fraction, &mut k);
             }

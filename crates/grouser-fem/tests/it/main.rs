@@ -2,6 +2,7 @@
 
 mod dynamics;
 mod elements;
+mod motion;
 mod refusals;
 mod statics;
 
