@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::internal_force::Elements;
 use crate::law::Law;
 use crate::loads::{Loads, Pressure};
-use crate::mass::{Mass, MassKind};
+use crate::mass::{Mass, MassKind, consistent_element_mass};
 use crate::material::{Formulation, Material, MaterialError};
 
 /// Where the pressure of an element comes from.
@@ -116,6 +116,14 @@ pub enum SolidError {
         /// Its value.
         value: f64,
     },
+    /// Consistent mass of an element that folds over.
+    #[error(
+        "element {element} folds over at a corner, so its consistent mass is not positive: straighten its curved sides, or take lumped mass"
+    )]
+    Folded {
+        /// Number of the element.
+        element: u64,
+    },
     /// Pressure that is infinite or not a number.
     #[error("pressure {pressure} on '{surface}' is not finite: expected Pa")]
     Pressure {
@@ -155,6 +163,12 @@ impl Solid {
         }
         for (material, region) in materials.iter().zip(&mesh.region_names) {
             material.validate(region)?;
+        }
+        if settings.mass == MassKind::Consistent {
+            let is_positive = |e: &usize| consistent_element_mass(&mesh, *e).cholesky().is_some();
+            if let Some(e) = (0..mesh.n_elements()).find(|e| !is_positive(e)) {
+                return Err(SolidError::Folded { element: mesh.element_label(e) });
+            }
         }
         let is_averaged = settings.volumetric == VolumetricTreatment::NodalAverage;
         if is_averaged && mesh.order == ElementOrder::Quadratic {

@@ -30,14 +30,17 @@
 //! # Ok::<(), grouser_geometry::generate::ShapeError>(())
 //! ```
 
+pub mod abaqus;
 mod bounding_box;
 pub mod esri_ascii;
 pub mod generate;
+pub mod gmsh;
 pub mod grey_image;
 mod height_grid;
 mod height_shape;
 pub mod lathe;
 pub mod mesh_doctor;
+mod mesh_file;
 pub mod obj;
 mod polygon;
 mod quality;
@@ -55,6 +58,7 @@ pub mod xyz_text;
 pub use bounding_box::BoundingBox;
 pub use height_grid::{GridError, HeightGrid};
 pub use height_shape::HeightShape;
+pub use mesh_file::MeshFileError;
 pub use nalgebra;
 pub use quality::QualityReport;
 pub use rigid_motion::RigidMotion;

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::TetrahedralMesh;
 use crate::tetrahedron_shape::{EDGES, FACE_CORNERS};
+use crate::{TetrahedralMesh, Vec3};
 
 /// Worst and mean figures of a mesh, with the elements that set them (corners only).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,6 +20,8 @@ pub struct QualityReport {
     pub largest_dihedral_angle: f64,
     /// Smallest shape figure 12 (3V)^(2/3) / Σ edge²: 1 for a regular tetrahedron, 0 for a flat one.
     pub smallest_shape: f64,
+    /// Ten-node elements whose curved sides fold over at a corner; harmless with lumped mass, straighten them otherwise.
+    pub n_folded_corners: usize,
     /// Mean shape figure.
     pub mean_shape: f64,
     /// Element of the smallest shape figure.
@@ -37,6 +39,7 @@ impl QualityReport {
             smallest_dihedral_angle: f64::INFINITY,
             largest_dihedral_angle: 0.0,
             smallest_shape: f64::INFINITY,
+            n_folded_corners: (0..n_elements).filter(|&e| mesh.is_folded(e)).count(),
             mean_shape: 0.0,
             worst_element: 0,
         };
@@ -50,9 +53,7 @@ impl QualityReport {
                     report.largest_dihedral_angle = report.largest_dihedral_angle.max(angle);
                 }
             }
-            let volume = (x[1] - x[0]).cross(&(x[2] - x[0])).dot(&(x[3] - x[0])) / 6.0;
-            let edges: f64 = EDGES.iter().map(|&[i, j]| (x[i] - x[j]).norm_squared()).sum();
-            let shape = 12.0 * (3.0 * volume.max(0.0)).powf(2.0 / 3.0) / edges;
+            let shape = shape_figure(&x);
             report.mean_shape += shape / n_elements as f64;
             if shape < report.smallest_shape {
                 report.smallest_shape = shape;
@@ -63,10 +64,17 @@ impl QualityReport {
     }
 }
 
+/// Shape figure 12 (3V)^(2/3) / Σ edge² of the corners of an element: 1 if regular, 0 if flat or inverted.
+pub(crate) fn shape_figure(x: &[Vec3]) -> f64 {
+    let volume = (x[1] - x[0]).cross(&(x[2] - x[0])).dot(&(x[3] - x[0])) / 6.0;
+    let edges: f64 = EDGES.iter().map(|&[i, j]| (x[i] - x[j]).norm_squared()).sum();
+    12.0 * (3.0 * volume.max(0.0)).powf(2.0 / 3.0) / edges
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Vec3, box_mesh};
+    use crate::box_mesh;
 
     #[test]
     fn a_regular_tetrahedron_is_perfect() {

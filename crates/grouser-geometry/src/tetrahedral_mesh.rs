@@ -4,11 +4,15 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::quality::shape_figure;
 use crate::tetrahedron_shape::{
     CORNERS, EDGES, FACE_CORNERS, FACE_NODES, QUADRATURE_POINTS, jacobian, linear_shape_derivatives,
     quadratic_shape_derivatives,
 };
 use crate::{TriangleSurface, Vec3};
+
+/// Smallest shape figure of an element that a solid accepts: dihedral angles down to about 0.1°, aspect ratios up to about 700.
+const SMALLEST_SHAPE: f64 = 0.01;
 
 /// Number of nodes of every element of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -105,8 +109,32 @@ pub enum MeshError {
     Inverted {
         /// Number of the first such element.
         element: u64,
-        /// Six times its smallest Jacobian determinant [m³].
+        /// A sixth of its smallest Jacobian determinant [m³].
         volume: f64,
+        /// How many there are.
+        count: usize,
+    },
+    /// A node that no element uses: it has no mass and cannot move.
+    #[error(
+        "node {node} belongs to no element: expected nodes of tetrahedra only; remove it (the readers do so)"
+    )]
+    UnusedNode {
+        /// Number of the node.
+        node: usize,
+    },
+    /// Elements so flat that they would set the step and spoil the stiffness.
+    #[error(
+        "{count} of the elements are slivers, worst element {element} with shape figure {shape:.1e} (1: regular, expected at least \
+         {least}); usual cause: a surface mesh much finer than the volume, or nodes almost in one plane; remedy: optimise the mesh (Gmsh: \
+         -optimize_netgen) or remesh"
+    )]
+    Sliver {
+        /// Number of the worst such element.
+        element: u64,
+        /// Its shape figure, see [`crate::QualityReport`].
+        shape: f64,
+        /// Smallest shape figure that is accepted.
+        least: f64,
         /// How many there are.
         count: usize,
     },
@@ -138,6 +166,13 @@ pub enum MeshError {
         /// Names that exist, joined by commas.
         known: String,
     },
+}
+
+fn smallest_quadratic_jacobian(positions: &[Vec3], points: &[[f64; 4]]) -> f64 {
+    points
+        .iter()
+        .map(|&l| jacobian(positions, &quadratic_shape_derivatives(l)).determinant())
+        .fold(f64::INFINITY, f64::min)
 }
 
 impl TetrahedralMesh {
@@ -182,21 +217,23 @@ impl TetrahedralMesh {
         (0..self.n_elements()).map(|e| self.element_volume(e)).sum()
     }
 
-    /// Smallest Jacobian determinant over an element's corners and quadrature points [m³] (6 × the volume if straight).
+    /// Smallest Jacobian determinant over an element's quadrature points [m³] (6 × the volume if straight).
     pub fn smallest_jacobian(&self, e: usize) -> f64 {
         let positions = self.element_positions(e);
         match self.order {
             ElementOrder::Linear => jacobian(&positions, &linear_shape_derivatives()).determinant(),
-            ElementOrder::Quadratic => CORNERS
-                .iter()
-                .chain(&QUADRATURE_POINTS)
-                .map(|&l| jacobian(&positions, &quadratic_shape_derivatives(l)).determinant())
-                .fold(f64::INFINITY, f64::min),
+            ElementOrder::Quadratic => smallest_quadratic_jacobian(&positions, &QUADRATURE_POINTS),
         }
     }
 
-    /// Checks everything that a solid relies on: lengths, node numbers, finite positions, positive volumes, faces shared by
-    /// at most two elements, one connected part.
+    /// Whether curved sides fold element `e` over at a corner: the quadrature points may still be sound.
+    pub fn is_folded(&self, e: usize) -> bool {
+        self.order == ElementOrder::Quadratic
+            && smallest_quadratic_jacobian(&self.element_positions(e), &CORNERS) <= 0.0
+    }
+
+    /// Checks everything that a solid relies on: lengths, node numbers, finite positions, positive volumes at the quadrature
+    /// points, no slivers, faces shared by at most two elements, one connected part, no unused node.
     ///
     /// # Errors
     /// The first [`MeshError`] found, with the element's number.
@@ -230,7 +267,13 @@ impl TetrahedralMesh {
         if let Some(node) = self.nodes.iter().position(|x| !x.iter().all(|c| c.is_finite())) {
             return Err(MeshError::PositionNotFinite { node });
         }
+        let mut is_used = vec![false; self.nodes.len()];
+        self.connectivity.iter().for_each(|&n| is_used[n as usize] = true);
+        if let Some(node) = is_used.iter().position(|is_used| !is_used) {
+            return Err(MeshError::UnusedNode { node });
+        }
         self.refuse_inverted()?;
+        self.refuse_slivers()?;
         self.boundary()?;
         self.refuse_unconnected()
     }
@@ -250,6 +293,18 @@ impl TetrahedralMesh {
                 volume: self.smallest_jacobian(e) / 6.0,
                 count: bad.len(),
             }),
+        }
+    }
+
+    fn refuse_slivers(&self) -> Result<(), MeshError> {
+        let shapes = (0..self.n_elements()).map(|e| (shape_figure(&self.element_positions(e)), e));
+        let slivers: Vec<(f64, usize)> = shapes.filter(|&(shape, _)| shape < SMALLEST_SHAPE).collect();
+        match slivers.iter().min_by(|a, b| a.0.total_cmp(&b.0)) {
+            None => Ok(()),
+            Some(&(shape, e)) => {
+                let (element, least, count) = (self.element_label(e), SMALLEST_SHAPE, slivers.len());
+                Err(MeshError::Sliver { element, shape, least, count })
+            }
         }
     }
 

@@ -2,4 +2,5 @@
 
 mod generators;
 mod mesh_doctor;
+mod mesh_files;
 mod readers;
