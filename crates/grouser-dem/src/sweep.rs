@@ -17,6 +17,9 @@ use crate::slab::Slab;
 use grouser_contact::{ContactLaw, Memory, Precision};
 use rayon::prelude::*;
 
+/// Grains below which another thread costs more in waking than it saves.
+const GRAINS_PER_THREAD: usize = 1_000;
+
 /// Forces of all slabs, and `motion` of every grain afterwards.
 pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
     slabs: &mut [Slab<P::Real, L::Memory>],
@@ -28,10 +31,12 @@ pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
     let ranges: Vec<_> = slabs.iter().map(Slab::grains).collect();
     let moves = |slab: usize| motion.advance(input.grains, ranges[slab % ranges.len()].clone());
     let n_slabs = slabs.len();
-    let run_length = run_length(n_slabs, rayon::current_num_threads());
+    let n_grains: usize = ranges.iter().map(ExactSizeIterator::len).sum();
+    let n_threads = rayon::current_num_threads().min((n_grains / GRAINS_PER_THREAD).max(1));
+    let run_length = run_length(n_slabs, n_threads);
     let is_last = |slab: usize| slab + 1 == n_slabs && !is_ring;
 
-    let first_turn = slabs.par_chunks_mut(run_length).enumerate().map(|(run, slabs)| {
+    let first_turn = |run: usize, slabs: &mut [Slab<P::Real, L::Memory>]| {
         let mut pace = Pace::STILL;
         let start = run * run_length;
         for even in (0..slabs.len()).step_by(2) {
@@ -49,10 +54,8 @@ pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
             pace = pace.and(moves(start + end));
         }
         pace
-    });
-    let pace = first_turn.reduce(|| Pace::STILL, Pace::and);
-
-    let second_turn = slabs.par_chunks_mut(run_length).enumerate().map(|(run, slabs)| {
+    };
+    let second_turn = |run: usize, slabs: &mut [Slab<P::Real, L::Memory>]| {
         let end = slabs.len() - 1;
         let slab = run * run_length + end;
         if end.is_multiple_of(2) || is_last(slab) {
@@ -60,8 +63,20 @@ pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
         }
         pass(&mut slabs[end], planes, input);
         moves(slab).and(moves(slab + 1))
-    });
-    pace.and(second_turn.reduce(|| Pace::STILL, Pace::and))
+    };
+    if n_slabs == 0 {
+        return Pace::STILL;
+    }
+    if n_threads == 1 {
+        // Everything is one run, and nobody has to be woken for it.
+        return first_turn(0, slabs).and(second_turn(0, slabs));
+    }
+    let runs = |slabs: &mut [Slab<P::Real, L::Memory>],
+                turn: &(dyn Fn(usize, &mut [Slab<P::Real, L::Memory>]) -> Pace + Sync)| {
+        let runs = slabs.par_chunks_mut(run_length).enumerate();
+        runs.map(|(run, slabs)| turn(run, slabs)).reduce(|| Pace::STILL, Pace::and)
+    };
+    runs(slabs, &first_turn).and(runs(slabs, &second_turn))
 }
 
 /// Slabs of a run: all of them for one thread, otherwise an even number that gives each thread several runs.

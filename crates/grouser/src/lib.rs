@@ -16,7 +16,7 @@
 //!     ),
 //! )"#;
 //! let scene = scene::read("thimble.ron", text, false, &[]).map_err(|messages| messages[0].to_string())?;
-//! let step = run::time_step(&scene)?;
+//! let step = run::time_step(&scene, scene.soil.grains().expect("grains"))?;
 //! assert!(step.criteria.iter().all(|criterion| step.step_s <= criterion.step_s()));
 //! assert_eq!(step.binding().name, "Hertz collision"); // of a grain that falls from the top of the loose packing
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -24,17 +24,9 @@ impl Terminal {
 
 impl Progress for Terminal {
     fn stage(&mut self, stage: &Stage) {
-        let text = match stage {
-            Stage::Settling { time_s, energy_ratio } => {
-                format!("settling  {time_s:.3} s simulated, kinetic energy over Σ m g r {energy_ratio:.1e}")
-            }
-            Stage::Pressing { plate, n_plates, diameter_m, done, left } => format!(
-                "plate {} of {n_plates} ({:.0} mm)  {:5.1} %  {} left",
-                plate + 1,
-                1e3 * diameter_m,
-                100.0 * done,
-                clock(*left)
-            ),
+        let text = match stage.done {
+            None => stage.text.clone(),
+            Some((done, left)) => format!("{}  {:5.1} %  {} left", stage.text, 100.0 * done, clock(left)),
         };
         if self.is_terminal {
             self.spoke = Some(Instant::now());

@@ -19,6 +19,11 @@ impl Series {
         Series { name: name.into(), times: Vec::new() }
     }
 
+    /// Name of the series.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Name of the index in the run's folder.
     pub fn index(&self) -> String {
         format!("{}.pvd", self.name)

@@ -31,10 +31,12 @@ pub struct Summary {
     pub error: Option<String>,
     /// Simulated and spent time.
     pub time: Time,
-    /// The step of time and what binds it.
-    pub time_step: TimeStep,
-    /// Where the work went.
-    pub energy: Energy,
+    /// The step of time and what binds it; absent where nothing is integrated in time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_step: Option<TimeStep>,
+    /// Where the work went; absent where nothing moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy: Option<Energy>,
     /// Conventions behind the numbers: name → meaning.
     pub conventions: BTreeMap<&'static str, String>,
     /// Results.
@@ -138,6 +140,38 @@ pub struct Metric {
     /// Where the reference is from.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
+}
+
+impl Metric {
+    /// A number without reference.
+    pub fn new(name: impl Into<String>, value: f64, unit: impl Into<String>) -> Self {
+        Self { name: name.into(), value, unit: unit.into(), ..Self::default() }
+    }
+}
+
+impl From<&grouser_dem::TimeStep> for TimeStep {
+    fn from(step: &grouser_dem::TimeStep) -> Self {
+        let criterion = |c: &grouser_dem::Criterion| Criterion {
+            name: c.name.clone(),
+            critical_s: c.time_s,
+            place: format!("{} (fraction {})", c.place, c.fraction),
+        };
+        Self {
+            dt_s: step.step_s,
+            binding: step.binding().name.clone(),
+            fraction: step.binding().fraction,
+            criteria: step.criteria.iter().map(criterion).collect(),
+        }
+    }
+}
+
+impl Energy {
+    /// A ledger; the residual is over the larger of work and loss.
+    pub fn new(input: f64, stored: f64, lost: f64, entries: Vec<EnergyEntry>) -> Self {
+        let scale = input.abs().max(lost);
+        let residual_fraction = if scale > 0.0 { (input - stored - lost) / scale } else { 0.0 };
+        Self { input_J: input, stored_J: stored, dissipated_J: lost, residual_fraction, entries }
+    }
 }
 
 impl Summary {

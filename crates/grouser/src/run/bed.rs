@@ -1,7 +1,7 @@
 //! From the scenario's soil to a loose bed of grains, and to the key under which its settled form is kept.
 
 use super::{Law, Materials, SetupError};
-use crate::scene::{Grains, Rotation, Scenario, Side, Sizes, Soil};
+use crate::scene::{Grains, Rotation, Scenario, Side, Sizes};
 use grouser_dem::{Bed, BedSettings, Domain, Layer, Plane, RadiusDistribution, random_packing};
 use grouser_geometry::Vec3;
 use serde::Serialize;
@@ -29,8 +29,7 @@ pub fn layers(soil: &Grains, materials: &Materials) -> Vec<Layer> {
 ///
 /// # Errors
 /// When the packing or the bed is refused.
-pub fn loose_bed<L: Law>(scenario: &Scenario, law: L) -> Result<Bed<L>, SetupError> {
-    let Soil::Grains(soil) = &scenario.soil;
+pub fn loose_bed<L: Law>(scenario: &Scenario, soil: &Grains, law: L) -> Result<Bed<L>, SetupError> {
     let materials = Materials::of(scenario);
     let wall = materials.number(&soil.container.material);
     let size = Vec3::from(soil.container.size_m);
@@ -65,11 +64,11 @@ pub fn loose_bed<L: Law>(scenario: &Scenario, law: L) -> Result<Bed<L>, SetupErr
 }
 
 /// Everything that a settled bed depends on, as a text: beds with the same key have the same bytes.
-pub fn key(scenario: &Scenario, time_step: f64) -> String {
+pub fn key(scenario: &Scenario, soil: &Grains, time_step: f64) -> String {
     #[derive(Serialize)]
     struct Key<'a> {
         version: &'a str,
-        soil: &'a Soil,
+        soil: &'a Grains,
         materials: &'a std::collections::BTreeMap<String, crate::scene::Material>,
         pairs: &'a [crate::scene::Pair],
         gravity_m_s2: [f64; 3],
@@ -78,7 +77,7 @@ pub fn key(scenario: &Scenario, time_step: f64) -> String {
     }
     let key = Key {
         version: env!("CARGO_PKG_VERSION"),
-        soil: &scenario.soil,
+        soil,
         materials: &scenario.materials,
         pairs: &scenario.pairs,
         gravity_m_s2: scenario.gravity_m_s2,

@@ -1,67 +1,76 @@
 //! What a scene will cost, before it runs.
 
+use super::indenter::Indenter;
 use super::{Law, Materials, SetupError, WithLaw, bed, time_step, with_law};
-use crate::scene::{Motion, Scenario, Soil, Tool};
-use grouser_dem::{Domain, Failure, TimeStep, sphere};
+use crate::scene::{Grains, Motion, Scenario, Soil};
+use grouser_dem::{Domain, Failure, sphere};
 use grouser_geometry::Vec3;
 use std::time::{Duration, Instant};
 
 /// Cost of a scene.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Estimate {
-    /// The step and what binds it.
-    pub time_step: TimeStep,
-    /// Number of grains.
-    pub n_grains: usize,
-    /// Steps of settling, by the time of fall and a few times that of coming to rest.
-    pub settling_steps: u64,
-    /// Steps of all tools together.
-    pub tool_steps: u64,
-    /// Grain-steps per second of this machine with the present number of threads, measured just now.
-    pub rate: f64,
-    /// Memory at the peak [bytes].
-    pub bytes: usize,
-}
-
-impl Estimate {
-    /// Time by the clock that settling and tools will take.
-    pub fn wall(&self) -> Duration {
-        let grain_steps = (self.settling_steps + self.tool_steps) as f64 * self.n_grains as f64;
-        Duration::from_secs_f64(grain_steps / self.rate)
-    }
+    /// What the cost is made of: name and a few words.
+    pub lines: Vec<(&'static str, String)>,
+    /// Time by the clock; `None` where nobody can tell.
+    pub wall: Option<Duration>,
 }
 
 /// Memory of a grain with its pairs [bytes] (`docs/performance.md`).
 const BYTES_PER_GRAIN: usize = 500;
 
-/// Estimates a scene; takes about a fifth of a second, for the measurement.
+/// Estimates a scene.
 ///
 /// # Errors
 /// When the scene cannot be built.
 pub fn estimate(scenario: &Scenario) -> Result<Estimate, SetupError> {
-    let step = time_step(scenario)?;
-    let Soil::Grains(soil) = &scenario.soil;
-    let n_grains = bed::layers(soil, &Materials::of(scenario)).iter().map(|layer| layer.n_grains).sum();
+    match &scenario.soil {
+        Soil::Grains(soil) => on_grains(scenario, soil),
+    }
+}
+
+/// Estimates a scene on grains; takes about a fifth of a second, for the measurement.
+fn on_grains(scenario: &Scenario, soil: &Grains) -> Result<Estimate, SetupError> {
+    let step = time_step(scenario, soil)?;
+    let n_grains: usize =
+        bed::layers(soil, &Materials::of(scenario)).iter().map(|layer| layer.n_grains).sum();
     let depth: f64 = soil.layers.iter().map(|layer| layer.depth_m).sum();
     let gravity = scenario.gravity_m_s2.iter().map(|g| g * g).sum::<f64>().sqrt();
     // The top grain falls about once the bed's depth; coming to rest takes about three times as long.
     let fall = (2.0 * 1.2 * depth / gravity).sqrt();
     let settling_steps = (4.0 * fall / step.step_s) as u64;
-    let mut tool_steps = 0;
-    let mut copies = 1;
-    if let (Some(Tool::Plates(plates)), Some(Motion::Press(press))) = (&scenario.tool, &scenario.motion) {
-        let travel = press.gap_m + press.depth_m;
-        tool_steps = (travel / press.speed_m_s / step.step_s) as u64 * plates.diameters_m.len() as u64;
-        copies = 2;
-    }
+    let tool_s = Indenter::count(scenario) as f64 * scenario.motion.as_ref().map_or(0.0, Motion::duration);
+    let tool_steps = (tool_s / step.step_s) as u64;
+    let copies = if tool_steps > 0 { 2 } else { 1 };
     let rate = with_law(&scenario.dials, MeasuredRate { n_grains })?;
+    let binding = step.binding();
     Ok(Estimate {
-        time_step: step,
-        n_grains,
-        settling_steps,
-        tool_steps,
-        rate,
-        bytes: copies * n_grains * BYTES_PER_GRAIN,
+        lines: vec![
+            (
+                "time step",
+                format!(
+                    "{:.3e} s, bound by the {} criterion ({} of {:.3e} s): {}",
+                    step.step_s, binding.name, binding.fraction, binding.time_s, binding.place
+                ),
+            ),
+            ("grains", n_grains.to_string()),
+            (
+                "steps",
+                format!(
+                    "about {settling_steps} to settle the bed (none when it is in the cache), {tool_steps} of the tools"
+                ),
+            ),
+            ("memory", format!("about {:.0} MB", (copies * n_grains * BYTES_PER_GRAIN) as f64 / 1e6)),
+            (
+                "pace",
+                format!(
+                    "{:.1} million grain-steps a second on {} threads, measured just now",
+                    rate / 1e6,
+                    rayon::current_num_threads()
+                ),
+            ),
+        ],
+        wall: Some(Duration::from_secs_f64((settling_steps + tool_steps) as f64 * n_grains as f64 / rate)),
     })
 }
 

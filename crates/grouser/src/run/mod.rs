@@ -2,28 +2,40 @@
 
 mod bed;
 mod cache;
+mod clock;
+mod compose;
+mod driver;
+mod ended;
 mod estimate;
+mod experiment;
+mod frames;
+mod indenter;
 mod law;
+mod leave;
 mod level;
 mod materials;
-mod outcome;
+mod on_bed;
 mod press;
+mod press_outcome;
 mod progress;
 mod report;
-mod results;
-mod state;
+mod rigid_tool;
 mod time_step;
-mod tool;
+mod tool_ledger;
 
 pub use bed::SETTLED_SOLID_FRACTION;
+pub use compose::run;
+pub use driver::Options;
+pub use ended::{Ended, RunError};
 pub use estimate::{Estimate, estimate};
+pub use experiment::{Advanced, Experiment, Outcome, Picture, Section, Status, Verdict};
 pub use law::{Law, WithLaw, with_law};
 pub use materials::Materials;
-pub use outcome::{Ended, RunError};
-pub use press::{PressLedger, Pressing};
+pub use on_bed::{OnBed, Pass};
+pub use press::Pressing;
 pub use progress::{Progress, Stage};
-pub use state::{Options, run};
 pub use time_step::{COLLISION_FRACTION, TRAVEL_FRACTION, time_step};
+pub use tool_ledger::ToolLedger;
 
 use grouser_contact::ParameterError;
 use grouser_dem::{BedError, PackingError};
@@ -46,6 +58,9 @@ pub enum SetupError {
     /// The motion of a tool.
     #[error(transparent)]
     Rigid(#[from] grouser_rigid::RigidError),
+    /// The file of a tool's surface.
+    #[error("{0}")]
+    Mesh(String),
     /// The settling bed did not come to rest.
     #[error(
         "the bed did not settle within {longest_s} s: kinetic energy over Σ m g r is {ratio:.1e}, expected {asked:.1e}; \

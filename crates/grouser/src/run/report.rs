@@ -1,21 +1,15 @@
 //! The report: one self-contained page.
 
-use super::results::Comparison;
-use crate::calibration::{Estimated, PlateFit};
-use crate::output::chart::Chart;
+use super::Outcome;
 use crate::output::summary::{Status, Summary};
 use crate::scene::{Scenario, resolved};
+use base64::Engine;
 use std::fmt::Write;
 
 const STYLE: &str = include_str!("report.css");
 
 /// The page of a run.
-pub fn page(
-    scenario: &Scenario,
-    summary: &Summary,
-    charts: &[(&str, Chart)],
-    comparison: &Comparison,
-) -> String {
+pub fn page(scenario: &Scenario, summary: &Summary, outcome: &Outcome) -> String {
     let mut body = String::new();
     let status = match summary.status {
         Status::Done => "done",
@@ -33,13 +27,35 @@ pub fn page(
         let _ =
             write!(body, "<section class=error><h2>What went wrong</h2><p>{}</p></section>", escaped(error));
     }
-    body += &verdict(comparison);
-    for (_, chart) in charts {
+    if let Some(verdict) = &outcome.verdict {
+        let _ = write!(
+            body,
+            "<section class=verdict><h2>{}</h2><p>{}</p>",
+            escaped(&verdict.heading),
+            escaped(&verdict.text)
+        );
+        if !verdict.source.is_empty() {
+            let _ = write!(body, "<p class=source>{}</p>", escaped(&verdict.source));
+        }
+        body += "</section>";
+    }
+    for (_, chart) in &outcome.charts {
         if let Ok(svg) = chart.to_inline_svg() {
             let _ = write!(body, "<figure>{svg}</figure>");
         }
     }
-    body += &fits(comparison);
+    for picture in &outcome.pictures {
+        let data = base64::engine::general_purpose::STANDARD.encode(&picture.png);
+        let caption = escaped(&picture.caption);
+        let _ = write!(
+            body,
+            "<figure><img alt=\"{caption}\" src=\"data:image/png;base64,{data}\"><figcaption>{caption}</figcaption></figure>"
+        );
+    }
+    for section in &outcome.sections {
+        let heads: Vec<&str> = section.heads.iter().map(String::as_str).collect();
+        body += &table(&section.title, &heads, section.rows.iter().cloned());
+    }
     let rows = summary.metrics.iter().map(|m| {
         let reference = m.reference.map_or(String::new(), number);
         let ratio = m.reference.filter(|r| *r != 0.0).map_or(String::new(), |r| number(m.value / r));
@@ -51,10 +67,7 @@ pub fn page(
     let pace = if t.wall_s > 0.0 { t.steps as f64 / t.wall_s } else { 0.0 };
     let rows = [
         ("simulated", format!("{} s in {} steps", number(t.simulated_s), t.steps)),
-        (
-            "by the clock",
-            format!("{:.1} s, of which {:.1} s before the first plate moved", t.wall_s, t.setup_s),
-        ),
+        ("by the clock", format!("{:.1} s, of which {:.1} s of preparation", t.wall_s, t.setup_s)),
         (
             "processor",
             t.cpu_s.map_or("unknown".into(), |s| format!("{s:.1} s on {} threads", summary.threads)),
@@ -62,17 +75,19 @@ pub fn page(
         ("pace", format!("{pace:.0} steps a second, {}", summary.host)),
     ];
     body += &table("Time", &["", ""], rows.map(|(name, text)| vec![name.to_owned(), text]).into_iter());
-    let step = &summary.time_step;
-    let rows = step.criteria.iter().map(|c| {
-        let mark = if c.name == step.binding { "◆ " } else { "" };
-        vec![format!("{mark}{}", c.name), format!("{} s", number(c.critical_s)), c.place.clone()]
-    });
-    let title = format!("Time step {} s, bound by: {}", number(step.dt_s), step.binding);
-    body += &table(&title, &["criterion", "critical time", "where"], rows);
-    let rows =
-        summary.energy.entries.iter().map(|e| vec![e.name.clone(), format!("{} J", number(e.value_J))]);
-    let title = format!("Energy, residual {:.3} % of the work", 100.0 * summary.energy.residual_fraction);
-    body += &table(&title, &["", ""], rows);
+    if let Some(step) = &summary.time_step {
+        let rows = step.criteria.iter().map(|c| {
+            let mark = if c.name == step.binding { "◆ " } else { "" };
+            vec![format!("{mark}{}", c.name), format!("{} s", number(c.critical_s)), c.place.clone()]
+        });
+        let title = format!("Time step {} s, bound by: {}", number(step.dt_s), step.binding);
+        body += &table(&title, &["criterion", "critical time", "where"], rows);
+    }
+    if let Some(energy) = &summary.energy {
+        let rows = energy.entries.iter().map(|e| vec![e.name.clone(), format!("{} J", number(e.value_J))]);
+        let title = format!("Energy, residual {:.3} % of the work", 100.0 * energy.residual_fraction);
+        body += &table(&title, &["", ""], rows);
+    }
     let rows = summary.conventions.iter().map(|(name, text)| vec![(*name).to_owned(), text.clone()]);
     body += &table("Conventions", &["", ""], rows);
     let _ = write!(
@@ -85,54 +100,6 @@ pub fn page(
          <title>{}</title><style>{STYLE}</style><main>{body}</main></html>\n",
         escaped(&scenario.title)
     )
-}
-
-/// How far simulation and measurement are apart, in words.
-fn verdict(comparison: &Comparison) -> String {
-    let ratios: Vec<f64> = comparison
-        .plates
-        .iter()
-        .flat_map(|plate| comparison.differences(plate))
-        .map(|(_, simulated, measured)| simulated / measured)
-        .filter(|ratio| ratio.is_finite() && *ratio > 0.0)
-        .collect();
-    let Some(measured) = comparison.measured.filter(|_| !ratios.is_empty()) else { return String::new() };
-    let mean = (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp();
-    let (low, high) = ratios.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), r| (l.min(*r), h.max(*r)));
-    let sentence = format!(
-        "Simulated pressure is {mean:.2} times the measured one on geometric average over {} points; the ratio runs from \
-         {low:.2} to {high:.2}.",
-        ratios.len()
-    );
-    format!(
-        "<section class=verdict><h2>How far apart</h2><p>{sentence}</p><p class=source>Measurement: {}</p></section>",
-        escaped(&measured.source)
-    )
-}
-
-fn fits(comparison: &Comparison) -> String {
-    let rows = [("simulation", &comparison.fit), ("measurement", &comparison.fit_measured)]
-        .into_iter()
-        .filter_map(|(name, fit)| fit.as_ref().map(|fit: &PlateFit| (name, fit)))
-        .map(|(name, fit)| {
-            let of = |e: &Estimated, scale: f64| {
-                format!("{} ± {}", number(scale * e.value), number(scale * e.half_width))
-            };
-            vec![
-                name.to_owned(),
-                of(&fit.k_c, 1e-3),
-                of(&fit.k_phi, 1e-3),
-                of(&fit.n, 1.0),
-                format!("{:.1} %", 100.0 * fit.relative_rms),
-                fit.n_points.to_string(),
-            ]
-        })
-        .collect::<Vec<_>>();
-    if rows.is_empty() {
-        return String::new();
-    }
-    let heads = ["", "k_c [kPa/m^(n−1)]", "k_φ [kPa/mⁿ]", "n [-]", "rms / mean", "points"];
-    table("p = (k_c/b + k_φ) zⁿ with b the plate's radius, ± 95 % confidence", &heads, rows.into_iter())
 }
 
 fn table(title: &str, heads: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
@@ -149,7 +116,7 @@ fn table(title: &str, heads: &[&str], rows: impl Iterator<Item = Vec<String>>) -
 }
 
 /// Four significant digits.
-fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }

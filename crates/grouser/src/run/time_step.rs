@@ -1,7 +1,7 @@
 //! The time step of a scene: the smallest over all criteria, all pairs, walls and tools included.
 
 use super::Materials;
-use crate::scene::{Motion, Scenario, Soil, Tool};
+use crate::scene::{Grains, Motion, Scenario};
 use grouser_contact::{Material, PairProperties, ParameterError};
 use grouser_dem::{Criterion, TimeStep};
 
@@ -15,25 +15,11 @@ pub const TRAVEL_FRACTION: f64 = 0.05;
 ///
 /// # Errors
 /// When a constant is out of range, which a checked scenario excludes.
-pub fn time_step(scenario: &Scenario) -> Result<TimeStep, ParameterError> {
-    let Soil::Grains(soil) = &scenario.soil;
-    let materials = Materials::of(scenario);
+pub fn time_step(scenario: &Scenario, soil: &Grains) -> Result<TimeStep, ParameterError> {
+    let materials = &Materials::of(scenario);
     let fraction = scenario.dials.time_step_fraction;
     let gravity = scenario.gravity_m_s2.iter().map(|g| g * g).sum::<f64>().sqrt();
-    let Some(Motion::Press(press)) = &scenario.motion else {
-        return smallest(scenario, soil, &materials, fraction, gravity, 0.0);
-    };
-    smallest(scenario, soil, &materials, fraction, gravity, press.speed_m_s)
-}
-
-fn smallest(
-    scenario: &Scenario,
-    soil: &crate::scene::Grains,
-    materials: &Materials,
-    fraction: f64,
-    gravity: f64,
-    tool_speed: f64,
-) -> Result<TimeStep, ParameterError> {
+    let tool_speed = scenario.motion.as_ref().map_or(0.0, Motion::speed);
     // The fastest grain: a fall through the loose packing, or the tool.
     let depth: f64 = soil.layers.iter().map(|layer| layer.depth_m).sum();
     let fall = (2.0 * gravity * depth).sqrt();
@@ -55,8 +41,8 @@ fn smallest(
         partners.extend(
             soil.layers.iter().map(|other| (other.material.as_str(), "a grain", other.sizes.range().0, fall)),
         );
-        if let Some(Tool::Plates(plates)) = &scenario.tool {
-            partners.push((plates.material.as_str(), "the plate", f64::INFINITY, tool_speed));
+        if let Some(tool) = &scenario.tool {
+            partners.push((tool.material(), "the tool", f64::INFINITY, tool_speed));
         }
         for (partner, called, its_radius, speed) in partners {
             if speed <= 0.0 {

@@ -5,6 +5,7 @@
 mod dials;
 mod locate;
 mod material;
+mod mesh;
 mod motion;
 mod outputs;
 mod read;
@@ -17,6 +18,7 @@ mod validate;
 pub use dials::{Dials, RestitutionTail, Rotation};
 pub use locate::{Found, Path, locate};
 pub use material::{Material, Pair};
+pub use mesh::Mesh;
 pub use motion::{Motion, Press};
 pub use outputs::Outputs;
 pub use read::{dialect, read, resolved};
@@ -42,7 +44,8 @@ pub struct Scenario {
     /// Acceleration of free fall [m/s²].
     #[serde(default = "standard_gravity")]
     pub gravity_m_s2: [f64; 3],
-    /// Materials by name; soil and tools refer to these names.
+    /// Materials of grains, walls and tools by name; soil and tools refer to these names.
+    #[serde(default)]
     pub materials: BTreeMap<String, Material>,
     /// Contacts between two different materials. Pairs left out take the smaller friction and the smaller
     /// restitution of the two, and stand in the resolved scenario.

@@ -9,6 +9,22 @@ pub enum Motion {
     Press(Press),
 }
 
+impl Motion {
+    /// Largest speed of a tool [m/s].
+    pub fn speed(&self) -> f64 {
+        match self {
+            Motion::Press(press) => press.speed_m_s,
+        }
+    }
+
+    /// Time that it takes [s].
+    pub fn duration(&self) -> f64 {
+        match self {
+            Motion::Press(press) => (press.gap_m + press.depth_m) / press.speed_m_s,
+        }
+    }
+}
+
 /// From above the bed's surface into it, straight down.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -1,6 +1,6 @@
 //! From text to a checked scenario, and back with every default written out.
 
-use super::{Pair, Scenario, Soil, Source, Tool, validate};
+use super::{Pair, Scenario, Source, Tool, validate};
 use crate::diagnostic::Diagnostic;
 use ron::error::{Error, SpannedError};
 use ron::extensions::Extensions;
@@ -38,6 +38,12 @@ pub fn read(
     }
     let mut scenario = scenario?;
     complete_pairs(&mut scenario);
+    if let Some(Tool::Mesh(mesh)) = &mut scenario.tool {
+        mesh.find_beside(name);
+        if let Err(message) = mesh.surface() {
+            return Err(vec![Diagnostic { place: source.place_of("tool.file"), ..message }]);
+        }
+    }
     let problems = validate(&scenario);
     if problems.is_empty() {
         return Ok(scenario);
@@ -63,12 +69,11 @@ fn parse(source: &Source) -> Result<Scenario, Diagnostic> {
 
 /// Writes down the contacts between unlike materials that meet but are not listed.
 fn complete_pairs(scenario: &mut Scenario) {
-    let mut names: Vec<&String> = Vec::new();
-    let Soil::Grains(grains) = &scenario.soil;
-    names.extend(grains.layers.iter().map(|layer| &layer.material));
-    names.push(&grains.container.material);
-    if let Some(Tool::Plates(plates)) = &scenario.tool {
-        names.push(&plates.material);
+    let mut names: Vec<&str> = Vec::new();
+    if let Some(grains) = scenario.soil.grains() {
+        names.extend(grains.layers.iter().map(|layer| layer.material.as_str()));
+        names.push(&grains.container.material);
+        names.extend(scenario.tool.as_ref().map(Tool::material));
     }
     names.sort();
     names.dedup();
@@ -188,12 +193,12 @@ mod tests {
     fn quick_and_set_override_in_this_order() {
         let set = sets(&[("materials.sand.young_pa", "7e6"), ("soil.settle.energy_ratio", "1e-3")]);
         let scenario = read("b.ron", BEVAMETER, true, &set).unwrap();
-        let Soil::Grains(bed) = &scenario.soil;
+        let bed = scenario.soil.grains().unwrap();
         assert_eq!(scenario.materials["sand"].young_pa, 7e6);
         assert_eq!(bed.settle.energy_ratio, 1e-3);
         assert_ne!(bed.layers[0].sizes, {
-            let Soil::Grains(full) = read("b.ron", BEVAMETER, false, &[]).unwrap().soil;
-            full.layers[0].sizes.clone()
+            let full = read("b.ron", BEVAMETER, false, &[]).unwrap();
+            full.soil.grains().unwrap().layers[0].sizes.clone()
         });
     }
 

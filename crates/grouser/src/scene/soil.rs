@@ -9,6 +9,14 @@ pub enum Soil {
     Grains(Grains),
 }
 
+impl Soil {
+    /// The bed of grains, when the ground is one.
+    pub fn grains(&self) -> Option<&Grains> {
+        let Soil::Grains(grains) = self;
+        Some(grains)
+    }
+}
+
 /// A bed of spheres, made by the tool itself: a random packing without overlap that settles under gravity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

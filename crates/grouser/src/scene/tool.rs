@@ -1,5 +1,6 @@
-//! What meets the ground: for now plates.
+//! What meets the ground.
 
+use super::Mesh;
 use serde::{Deserialize, Serialize};
 
 /// Kinds of tools.
@@ -7,6 +8,18 @@ use serde::{Deserialize, Serialize};
 pub enum Tool {
     /// Circular plates, each pressed into its own copy of the same bed.
     Plates(Plates),
+    /// A rigid body with a surface from a file.
+    Mesh(Mesh),
+}
+
+impl Tool {
+    /// Name of the material that grains touch.
+    pub fn material(&self) -> &str {
+        match self {
+            Tool::Plates(plates) => &plates.material,
+            Tool::Mesh(mesh) => &mesh.material,
+        }
+    }
 }
 
 /// A set of rigid circular plates.

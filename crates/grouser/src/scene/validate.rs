@@ -3,7 +3,7 @@
 mod grains;
 mod press;
 
-use super::{Motion, Outputs, Reference, Scenario, Soil, Tool};
+use super::{Motion, Outputs, Reference, Scenario, Soil};
 use crate::diagnostic::Diagnostic;
 
 /// A value that cannot be, with its path in the scenario.
@@ -37,12 +37,13 @@ impl From<Problem> for Diagnostic {
 pub fn validate(scenario: &Scenario) -> Vec<Problem> {
     let mut check = Check::default();
     materials(&mut check, scenario);
-    let Soil::Grains(bed) = &scenario.soil;
-    grains::validate(&mut check, scenario, bed);
+    if let Some(bed) = scenario.soil.grains() {
+        grains::validate(&mut check, scenario, bed);
+    }
     match (&scenario.tool, &scenario.motion) {
-        (Some(Tool::Plates(plates)), Some(Motion::Press(press))) => {
-            press::validate(&mut check, scenario, bed, plates, press);
-        }
+        (Some(tool), Some(Motion::Press(press))) => match &scenario.soil {
+            Soil::Grains(bed) => press::validate(&mut check, scenario, bed, tool, press),
+        },
         (Some(_), None) => check.fail(
             "tool",
             "the scene has a tool but no motion",

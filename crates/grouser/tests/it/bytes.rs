@@ -28,7 +28,7 @@ fn threads_cache_interruptions_and_the_resolved_scenario_change_no_byte() {
     run("cache", "one", "cup.ron", &["--threads", "1"]);
     let straight = results(&home.path().join("one"));
     for name in
-        ["summary.json", "report.html", "pressure_sinkage.png", "grains.pvd", "plate.pvd", "checkpoint.bin"]
+        ["summary.json", "report.html", "pressure_sinkage.png", "grains.pvd", "tool.pvd", "checkpoint.bin"]
     {
         assert!(home.path().join("one").join(name).is_file(), "{name}");
     }

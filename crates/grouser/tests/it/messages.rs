@@ -80,7 +80,7 @@ fn a_tool_too_fast_for_its_bed_fails_with_step_time_grain_and_remedy_and_keeps_a
         grouser(home.path(), &["run", &scene.display().to_string(), "--out", &out.display().to_string()]);
     let message = errors(&output);
     assert_eq!(output.status.code(), Some(3), "{message}");
-    for part in ["grain ", "(step ", " s, plate of 30 mm)", "remedy: ", "checkpoint was kept"] {
+    for part in ["grain ", "(step ", " s, 30 mm plate)", "remedy: ", "checkpoint was kept"] {
         assert!(message.contains(part), "{part} is not in: {message}");
     }
     // The very step that failed, not the sample or look before it.
@@ -88,4 +88,43 @@ fn a_tool_too_fast_for_its_bed_fails_with_step_time_grain_and_remedy_and_keeps_a
     assert!(out.join("checkpoint.bin").is_file());
     let summary = fs::read_to_string(out.join("summary.json")).unwrap();
     assert!(summary.contains("\"status\": \"failed\"") && summary.contains("\"error\""));
+}
+
+#[test]
+fn a_mesh_that_is_no_body_is_refused_at_its_line_and_a_good_one_is_pressed() {
+    let home = tempfile::tempdir().unwrap();
+    let path = |name: &str| home.path().join(name).display().to_string();
+    let scene = CUP
+        .replace(
+            "tool: Plates(diameters_m: [0.03, 0.04], thickness_m: 0.01",
+            "tool: Mesh(file: \"wedge.obj\", scale: 0.001",
+        )
+        .replace("depth_m: 0.012", "depth_m: 0.004");
+    fs::write(path("cup.ron"), scene).unwrap();
+    // A roof 30 mm long with its ridge downwards, in millimetres.
+    let wedge = "v 0 0 0\nv 30 0 0\nv 30 -8 10\nv 0 -8 10\nv 30 8 10\nv 0 8 10\n\
+                 f 1 2 3\nf 1 3 4\nf 1 5 2\nf 1 6 5\nf 4 3 5\nf 4 5 6\nf 2 5 3\nf 1 4 6\n";
+    for (mesh, part) in [
+        (wedge.replace("v 30 8 10", "v 30 nan 10"), "not finite"),
+        (wedge.replace("v 30 8 10", "v 30 0 0"), "no area"),
+        (wedge.replace("f 1 4 6\n", ""), "hole"),
+        (wedge.replace("f 1 4 6", "f 1 4 60"), "line 14"),
+    ] {
+        fs::write(path("wedge.obj"), mesh).unwrap();
+        let output = grouser(home.path(), &["run", &path("cup.ron"), "--out", &path("out")]);
+        let message = errors(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        for part in [part, "cup.ron:11:", "usual cause: "] {
+            assert!(message.contains(part), "{part} is not in: {message}");
+        }
+        assert!(!home.path().join("out").exists());
+    }
+    fs::write(path("wedge.obj"), wedge).unwrap();
+    let output = grouser(home.path(), &["run", &path("cup.ron"), "--out", &path("out")]);
+    assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+    let rows = fs::read_to_string(home.path().join("out/tool.csv")).unwrap();
+    let last: Vec<f64> = rows.lines().last().unwrap().split(',').map(|v| v.parse().unwrap()).collect();
+    // It carries load, and its mean pressure is over 30 mm × 16 mm as seen from below.
+    let (pressure, force_z) = (last[2], last[5]);
+    assert!(force_z > 0.0 && (pressure * 0.03 * 0.016 / force_z - 1.0).abs() < 1e-9, "{rows}");
 }

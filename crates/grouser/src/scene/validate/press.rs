@@ -1,22 +1,20 @@
 //! Checks of plates pressed into a bed.
 
 use super::{Check, grains};
-use crate::scene::{Grains, Plates, Press, Reference, Scenario};
+use crate::scene::{Grains, Plates, Press, Reference, Scenario, Tool};
 
-pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, plates: &Plates, press: &Press) {
+pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, tool: &Tool, press: &Press) {
     let before = check.problems.len();
-    check.material(scenario, "tool.material", &plates.material);
-    check.positive("tool.thickness_m", plates.thickness_m, "a thickness [m]");
-    let segments = plates.segments as f64;
-    check.require("tool.segments", segments, plates.segments >= 3, "at least 3; 64 looks round", "");
-    if plates.diameters_m.is_empty() {
-        check.fail("tool.diameters_m", "there is no plate", "at least one diameter [m]", "an empty list");
-    }
-    for (i, &diameter) in plates.diameters_m.iter().enumerate() {
-        let path = format!("tool.diameters_m[{i}]");
-        check.positive(&path, diameter, "a diameter [m]");
-        let narrowest = bed.container.size_m[0].min(bed.container.size_m[1]);
-        check.require(&path, diameter, diameter < narrowest || diameter.is_nan(), &format!("below {narrowest} m, the narrower side of the container; a third of it keeps its sides out of the result"), "millimetres where metres are asked");
+    check.material(scenario, "tool.material", tool.material());
+    match tool {
+        Tool::Plates(plates) => validate_plates(check, bed, plates),
+        Tool::Mesh(mesh) => {
+            check.positive(
+                "tool.scale",
+                mesh.scale,
+                "metres for one unit of the file; 0.001 for millimetres",
+            );
+        }
     }
     check.positive("motion.speed_m_s", press.speed_m_s, "a speed downwards [m/s]");
     check.positive("motion.depth_m", press.depth_m, "a sinkage [m]");
@@ -39,6 +37,21 @@ pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, plates: &P
     );
     if check.problems.len() == before && before == 0 {
         grains::carries(check, scenario, bed, largest_measured(scenario, press.depth_m), "the measured load");
+    }
+}
+
+fn validate_plates(check: &mut Check, bed: &Grains, plates: &Plates) {
+    check.positive("tool.thickness_m", plates.thickness_m, "a thickness [m]");
+    let segments = plates.segments as f64;
+    check.require("tool.segments", segments, plates.segments >= 3, "at least 3; 64 looks round", "");
+    if plates.diameters_m.is_empty() {
+        check.fail("tool.diameters_m", "there is no plate", "at least one diameter [m]", "an empty list");
+    }
+    let narrowest = bed.container.size_m[0].min(bed.container.size_m[1]);
+    for (i, &diameter) in plates.diameters_m.iter().enumerate() {
+        let path = format!("tool.diameters_m[{i}]");
+        check.positive(&path, diameter, "a diameter [m]");
+        check.require(&path, diameter, diameter < narrowest || diameter.is_nan(), &format!("below {narrowest} m, the narrower side of the container; a third of it keeps its sides out of the result"), "millimetres where metres are asked");
     }
 }
 

@@ -1,133 +1,41 @@
-//! What a run leaves at its end: time series, curves, fits, metrics, plots, summary and report.
+//! What has come of pressing: curves over measured ones, fits of both, metrics, charts.
 
-use super::level::bulk_density;
-use super::state::{Clock, Finished, RunStage, Runner, State};
-use super::{Ended, Law, RunError, report};
-use crate::calibration::{PlateFit, PlatePoint, fit_plates};
+use super::experiment::{Outcome, Section, Verdict};
+use super::press::Pressed;
+use super::report::number;
+use super::tool_ledger::ToolLedger;
+use crate::calibration::{Estimated, PlateFit, PlatePoint, fit_plates};
 use crate::output::chart::{Chart, Mark, Series};
-use crate::output::summary::{self, Criterion, Energy, EnergyEntry, Metric, Status, Summary, Time};
-use crate::output::write_atomic;
-use crate::scene::{Motion, PressureSinkage, Reference};
-use grouser_dem::TimeStep;
+use crate::output::summary::Metric;
+use crate::scene::{Motion, PressureSinkage, Reference, Scenario};
 use std::collections::BTreeMap;
-use std::io;
+
+/// Everything that follows from the tools that have reached their depth.
+pub fn outcome(scenario: &Scenario, done: &[Pressed]) -> Outcome {
+    let comparison = Comparison::new(scenario, done);
+    let ledgers: Vec<ToolLedger> = done.iter().map(|tool| tool.ledger).collect();
+    Outcome {
+        energy: Some(ToolLedger::energy(&ledgers)),
+        conventions: conventions(),
+        metrics: comparison.metrics(),
+        tables: done.iter().map(|tool| (tool.name.clone(), tool.table.clone())).collect(),
+        charts: comparison.charts(),
+        verdict: comparison.verdict(),
+        sections: comparison.fits().into_iter().collect(),
+        ..Outcome::default()
+    }
+}
 
 /// Measured and simulated curves of a press, and the laws fitted to both.
 pub struct Comparison<'a> {
     /// Plates that reached their depth.
-    pub plates: &'a [Finished],
+    pub plates: &'a [Pressed],
     /// What was measured, when the scene has it.
     pub measured: Option<&'a PressureSinkage>,
     /// Fit to the simulated curves.
     pub fit: Option<PlateFit>,
     /// Fit to the measured points, over the same sinkages.
     pub fit_measured: Option<PlateFit>,
-}
-
-/// Writes everything that follows from the finished plates.
-pub(super) fn leave<L: Law>(
-    runner: &Runner,
-    state: &State<L>,
-    step: &TimeStep,
-    clock: &Clock,
-    ended: &Result<Ended, RunError>,
-) -> Result<(), RunError> {
-    let folder = &runner.options.folder;
-    let mut files = vec!["scenario.ron".to_owned(), "summary.json".to_owned(), "report.html".to_owned()];
-    let mut write = |name: String, bytes: &[u8]| -> io::Result<()> {
-        write_atomic(&folder.join(&name), bytes)?;
-        files.push(name);
-        Ok(())
-    };
-    for plate in &state.done {
-        write(format!("plate_{:.0}mm.csv", 1e3 * plate.diameter), plate.table.to_csv().as_bytes())?;
-    }
-    let comparison = Comparison::new(runner, &state.done);
-    let charts = comparison.charts();
-    for (name, chart) in &charts {
-        let drawn = |error: Box<dyn std::error::Error + Send + Sync>| io::Error::other(error.to_string());
-        write(format!("{name}.svg"), chart.to_svg().map_err(drawn)?.as_bytes())?;
-        write(format!("{name}.png"), &chart.to_png().map_err(drawn)?)?;
-    }
-    if !state.done.is_empty() || state.time_s > 0.0 {
-        files.extend([state.grains.index(), state.plate.index()]);
-    }
-    if !matches!(ended, Ok(Ended::Done)) {
-        files.push("checkpoint.bin".into());
-    }
-    let summary = Summary {
-        schema: summary::SCHEMA,
-        scenario: runner.scenario.title.clone(),
-        version: env!("CARGO_PKG_VERSION"),
-        git: runner.options.git.clone(),
-        host: format!(
-            "{} {}, {} processors",
-            std::env::consts::OS,
-            std::env::consts::ARCH,
-            std::thread::available_parallelism().map_or(1, usize::from)
-        ),
-        threads: rayon::current_num_threads(),
-        status: match ended {
-            Ok(Ended::Done) => Status::Done,
-            Ok(Ended::Interrupted) => Status::Interrupted,
-            Err(_) => Status::Failed,
-        },
-        error: ended.as_ref().err().map(ToString::to_string),
-        time: Time {
-            simulated_s: state.time_s,
-            wall_s: clock.wall_s,
-            cpu_s: clock.cpu_s,
-            setup_s: clock.setup_s,
-            steps: state.n_steps,
-        },
-        time_step: summary::TimeStep {
-            dt_s: step.step_s,
-            binding: step.binding().name.clone(),
-            fraction: step.binding().fraction,
-            criteria: step
-                .criteria
-                .iter()
-                .map(|c| Criterion {
-                    name: c.name.clone(),
-                    critical_s: c.time_s,
-                    place: format!("{} (fraction {})", c.place, c.fraction),
-                })
-                .collect(),
-        },
-        energy: energy(&state.done),
-        conventions: conventions(),
-        metrics: [bed_metrics(state), comparison.metrics()].concat(),
-        files,
-    };
-    summary.write(folder)?;
-    let page = report::page(runner.scenario, &summary, &charts, &comparison);
-    write_atomic(&folder.join("report.html"), page.as_bytes())?;
-    Ok(())
-}
-
-/// The plates' ledgers together.
-fn energy(plates: &[Finished]) -> Energy {
-    let sum = |of: fn(&super::PressLedger) -> f64| plates.iter().map(|plate| of(&plate.ledger)).sum::<f64>();
-    let entry =
-        |name: &str, of: fn(&super::PressLedger) -> f64| EnergyEntry { name: name.into(), value_J: sum(of) };
-    let (input, stored, lost) = (sum(|l| l.input), sum(|l| l.stored()), sum(|l| l.dissipated()));
-    let scale = input.abs().max(lost);
-    Energy {
-        input_J: input,
-        stored_J: stored,
-        dissipated_J: lost,
-        residual_fraction: if scale > 0.0 { (input - stored - lost) / scale } else { 0.0 },
-        entries: vec![
-            entry("work of the plates", |l| l.input),
-            entry("kinetic energy gained", |l| l.kinetic),
-            entry("elastic energy gained among grains", |l| l.elastic),
-            entry("elastic energy gained at the plates", |l| l.plate_elastic),
-            entry("gravitational energy gained", |l| l.gravitational),
-            entry("lost in normal dashpots", |l| l.normal_damping),
-            entry("lost by sliding friction", |l| l.sliding),
-            entry("lost by tangential dashpots and slackened springs", |l| l.sticking),
-        ],
-    }
 }
 
 fn conventions() -> BTreeMap<&'static str, String> {
@@ -147,41 +55,14 @@ fn conventions() -> BTreeMap<&'static str, String> {
     ])
 }
 
-fn bed_metrics<L: Law>(state: &State<L>) -> Vec<Metric> {
-    let (bed, settled) = match &state.stage {
-        RunStage::Settling { .. } => return Vec::new(),
-        RunStage::Pressing { bed, settled, .. } | RunStage::Done { bed, settled } => (bed, settled),
-    };
-    let spheres = &bed.grains().spheres;
-    let size = [0, 1].map(|axis| bed.settings().domain.size()[axis]);
-    let level = super::level::surface_level(spheres, size);
-    let density = bulk_density(spheres, size, level);
-    let solid: f64 = spheres.iter().map(|s| 4.0 / 3.0 * std::f64::consts::PI * s.radius.powi(3)).sum();
-    let metric = |name: &str, value: f64, unit: &str| Metric {
-        name: name.into(),
-        value,
-        unit: unit.into(),
-        ..Metric::default()
-    };
-    vec![
-        metric("grains", spheres.len() as f64, "-"),
-        metric("bed depth", level, "m"),
-        metric("bulk density", density, "kg/m³"),
-        metric("solid fraction", solid / (size[0] * size[1] * level), "-"),
-        metric("contacts per grain", 2.0 * bed.n_contacts() as f64 / spheres.len() as f64, "-"),
-        metric("settling time", settled.time_s, "s"),
-        metric("kinetic energy over Σ m g r when settled", settled.kinetic_energy_ratio, "-"),
-    ]
-}
-
 impl<'a> Comparison<'a> {
-    fn new(runner: &'a Runner, plates: &'a [Finished]) -> Self {
-        let measured = runner.scenario.reference.first().map(|Reference::PressureSinkage(measured)| measured);
-        let depth = match &runner.scenario.motion {
+    fn new(scenario: &'a Scenario, plates: &'a [Pressed]) -> Self {
+        let measured = scenario.reference.iter().map(|Reference::PressureSinkage(measured)| measured).next();
+        let depth = match &scenario.motion {
             Some(Motion::Press(press)) => press.depth_m,
             _ => 0.0,
         };
-        let simulated: Vec<PlatePoint> = plates.iter().flat_map(Finished::points).collect();
+        let simulated: Vec<PlatePoint> = plates.iter().flat_map(Pressed::points).collect();
         let of_measurement = |measured: &PressureSinkage| -> Vec<PlatePoint> {
             let of_plate = |plate: &crate::scene::PlateCurve| {
                 let radius = plate.diameter_m / 2.0;
@@ -201,7 +82,7 @@ impl<'a> Comparison<'a> {
     }
 
     /// Pairs of (sinkage, simulated, measured pressure) wherever both are known, for one plate.
-    pub fn differences(&self, plate: &Finished) -> Vec<(f64, f64, f64)> {
+    pub fn differences(&self, plate: &Pressed) -> Vec<(f64, f64, f64)> {
         let Some(measured) = self.measured else { return Vec::new() };
         let is_same = |curve: &&crate::scene::PlateCurve| (curve.diameter_m - plate.diameter).abs() < 1e-6;
         let curves = measured.plates.iter().filter(is_same);
@@ -211,8 +92,52 @@ impl<'a> Comparison<'a> {
             .collect()
     }
 
+    /// How far simulation and measurement are apart, in words.
+    fn verdict(&self) -> Option<Verdict> {
+        let differences = self.plates.iter().flat_map(|plate| self.differences(plate));
+        let ratios: Vec<f64> = differences
+            .map(|(_, simulated, measured)| simulated / measured)
+            .filter(|ratio| ratio.is_finite() && *ratio > 0.0)
+            .collect();
+        let measured = self.measured.filter(|_| !ratios.is_empty())?;
+        let mean = (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp();
+        let (low, high) = ratios.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), r| (l.min(*r), h.max(*r)));
+        Some(Verdict {
+            heading: "How far apart".into(),
+            text: format!(
+                "Simulated pressure is {mean:.2} times the measured one on geometric average over {} points; the ratio \
+                 runs from {low:.2} to {high:.2}.",
+                ratios.len()
+            ),
+            source: format!("Measurement: {}", measured.source),
+        })
+    }
+
+    /// The parameters fitted to both.
+    fn fits(&self) -> Option<Section> {
+        let row = |(name, fit): (&str, &PlateFit)| {
+            let of = |e: &Estimated, scale: f64| {
+                format!("{} ± {}", number(scale * e.value), number(scale * e.half_width))
+            };
+            vec![
+                name.to_owned(),
+                of(&fit.k_c, 1e-3),
+                of(&fit.k_phi, 1e-3),
+                of(&fit.n, 1.0),
+                format!("{:.1} %", 100.0 * fit.relative_rms),
+                fit.n_points.to_string(),
+            ]
+        };
+        let fits = [("simulation", &self.fit), ("measurement", &self.fit_measured)];
+        let rows: Vec<_> =
+            fits.into_iter().filter_map(|(name, fit)| Some((name, fit.as_ref()?))).map(row).collect();
+        let heads = ["", "k_c [kPa/m^(n−1)]", "k_φ [kPa/mⁿ]", "n [-]", "rms / mean", "points"];
+        let title = "p = (k_c/b + k_φ) zⁿ with b the plate's radius, ± 95 % confidence";
+        (!rows.is_empty()).then(|| Section::new(title, &heads, rows))
+    }
+
     /// The charts of the report, by file name.
-    pub fn charts(&self) -> Vec<(&'static str, Chart)> {
+    pub fn charts(&self) -> Vec<(String, Chart)> {
         let mut curves = Chart {
             title: "Mean pressure under circular plates".into(),
             x_label: "sinkage z [mm]".into(),
@@ -223,7 +148,7 @@ impl<'a> Comparison<'a> {
             points.map(|(sinkage, pressure)| (1e3 * sinkage, 1e-3 * pressure)).collect()
         };
         for (colour, plate) in self.plates.iter().enumerate() {
-            let label = format!("{:.0} mm", 1e3 * plate.diameter);
+            let label = &plate.label;
             let mut simulated = plate.points().into_iter().map(|p| (p.sinkage, p.pressure));
             let name = format!("{label} simulated");
             curves.series.push(Series { name, colour, mark: Mark::Line, points: scaled(&mut simulated) });
@@ -252,16 +177,20 @@ impl<'a> Comparison<'a> {
         for (colour, plate) in self.plates.iter().enumerate() {
             let (sinkage, spent) = (plate.table.column("sinkage"), plate.table.column("work"));
             let points = sinkage.into_iter().map(|z| 1e3 * z).zip(spent).collect();
-            let name = format!("{:.0} mm", 1e3 * plate.diameter);
+            let name = plate.label.clone();
             work.series.push(Series { name, colour, mark: Mark::Line, points });
         }
-        if self.plates.is_empty() { Vec::new() } else { vec![("pressure_sinkage", curves), ("work", work)] }
+        if self.plates.is_empty() {
+            Vec::new()
+        } else {
+            vec![("pressure_sinkage".into(), curves), ("work".into(), work)]
+        }
     }
 
     fn metrics(&self) -> Vec<Metric> {
         let mut metrics = Vec::new();
         for plate in self.plates {
-            let label = format!("{:.0} mm plate", 1e3 * plate.diameter);
+            let label = &plate.label;
             for (sinkage, simulated, measured) in self.differences(plate) {
                 metrics.push(Metric {
                     name: format!("{label}: pressure at {:.1} mm", 1e3 * sinkage),
@@ -280,7 +209,7 @@ impl<'a> Comparison<'a> {
             });
         }
         if let Some(fit) = &self.fit {
-            let of = |name: &str, unit: &str, pick: fn(&PlateFit) -> crate::calibration::Estimated| Metric {
+            let of = |name: &str, unit: &str, pick: fn(&PlateFit) -> Estimated| Metric {
                 name: format!("{name}, fitted to the simulation"),
                 value: pick(fit).value,
                 unit: unit.into(),
@@ -299,7 +228,7 @@ impl<'a> Comparison<'a> {
     }
 }
 
-impl Finished {
+impl Pressed {
     /// Samples after the plate has reached the surface.
     pub fn points(&self) -> Vec<PlatePoint> {
         let (sinkage, pressure) = (self.table.column("sinkage"), self.table.column("pressure"));

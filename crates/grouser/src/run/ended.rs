@@ -22,10 +22,14 @@ pub enum RunError {
     #[error(transparent)]
     Setup(#[from] SetupError),
     /// The motion has become meaningless.
-    #[error("{failure} (step {step}, {time_s:.6} s{place}); remedy: {}; the last good checkpoint was kept", .failure.remedy())]
+    #[error(
+        "{what} (step {step}, {time_s:.6} s{place}); remedy: {remedy}; the last good checkpoint was kept"
+    )]
     Numerics {
-        /// What happened.
-        failure: Failure,
+        /// What happened, to which grain or element.
+        what: String,
+        /// What to do.
+        remedy: String,
         /// Step within its stage.
         step: u64,
         /// Simulated time within its stage [s].
@@ -51,6 +55,17 @@ pub enum RunError {
 }
 
 impl RunError {
+    /// A failure of the grains' motion.
+    pub fn numerics(failure: &Failure, step: u64, time_s: f64, place: &str) -> Self {
+        Self::Numerics {
+            what: failure.to_string(),
+            remedy: failure.remedy().to_string(),
+            step,
+            time_s,
+            place: place.to_owned(),
+        }
+    }
+
     /// Exit status of the program: 2 the input is wrong, 3 the numerics failed.
     pub fn exit_status(&self) -> u8 {
         match self {

@@ -1,47 +1,44 @@
-//! A rigid circular plate, driven straight down, in contact with grains.
+//! A rigid tool in contact with grains.
 
 use super::{Law, SetupError};
-use crate::scene::Plates;
 use grouser_contact::{ContactLedger, PairTable};
 use grouser_coupling::{Step, SurfaceContacts};
 use grouser_dem::{Failure, Grains, LARGEST_OVERLAP};
-use grouser_geometry::generate::disc_plate;
 use grouser_geometry::{Pose, TriangleSurface, Vec3, Wrench};
 use grouser_rigid::{BodySpec, Degree, Freedom, RigidBody, VelocityProfile};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 
-/// A plate on its way.
+/// A rigid tool on its way.
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(bound = "L: Law")]
-pub struct Plate<L: Law> {
+pub struct RigidTool<L: Law> {
     body: RigidBody,
     contacts: SurfaceContacts<L::Memory>,
 }
 
-impl<L: Law> Plate<L> {
-    /// A plate of `diameter` [m] whose lower face is centred at `lowest_point`, about to move down at `speed` [m/s].
+impl<L: Law> RigidTool<L> {
+    /// A tool whose surface's origin is at `position`, about to move as `body` says.
+    pub fn new(body: RigidBody, surface: TriangleSurface, material: u32) -> Self {
+        Self { body, contacts: SurfaceContacts::new(surface, material) }
+    }
+
+    /// A tool that moves straight down from `lowest_point` at `speed` [m/s].
     ///
     /// # Errors
-    /// When the shape or the motion is refused.
-    pub fn new(
-        plates: &Plates,
-        diameter: f64,
+    /// When the motion is refused.
+    pub fn pressed(
+        surface: TriangleSurface,
         lowest_point: Vec3,
         speed: f64,
         material: u32,
     ) -> Result<Self, SetupError> {
-        // The polygon has the circle's area: n/2 sin(2π/n) R² = π r².
-        let n = plates.segments as f64;
-        let corner_radius = diameter / 2.0 * (TAU / (n * (TAU / n).sin())).sqrt();
-        let surface = disc_plate(corner_radius, plates.thickness_m, plates.segments)?;
         let down = Freedom::Prescribed(VelocityProfile::constant(-speed));
         let body = RigidBody::new(BodySpec::driven(lowest_point).with(Degree::Z, down))?;
-        Ok(Self { body, contacts: SurfaceContacts::new(surface, material) })
+        Ok(Self::new(body, surface, material))
     }
 
-    /// One step: the plate moves, meets the grains, and both receive their forces. Returns the force on the plate and
-    /// its moment about the centre of the lower face.
+    /// One step: the tool moves, meets the grains, and both receive their forces. Returns the force on the tool and
+    /// its moment about the origin of its surface.
     ///
     /// # Errors
     /// When a grain is pressed further than the contact law means.
@@ -66,17 +63,17 @@ impl<L: Law> Plate<L> {
         }
     }
 
-    /// Height of the lower face [m].
-    pub fn lowest_point(&self) -> f64 {
+    /// Height of the origin of its surface [m].
+    pub fn height(&self) -> f64 {
         self.body.motion().position.z
     }
 
-    /// Power of the grains on the plate [W]; negative while the plate works on them.
+    /// Power of the grains on the tool [W]; negative while the tool works on them.
     pub fn applied_power(&self) -> f64 {
         self.body.applied_power()
     }
 
-    /// Work that the plate has done on the grains [J].
+    /// Work that the tool has done on the grains [J].
     pub fn work_on_grains(&self) -> f64 {
         -self.body.work().applied
     }
@@ -86,12 +83,12 @@ impl<L: Law> Plate<L> {
         self.contacts.n_contacts()
     }
 
-    /// Energy of the plate's contacts since the beginning.
+    /// Energy of the tool's contacts since the beginning.
     pub fn ledger(&self) -> &ContactLedger {
         self.contacts.ledger()
     }
 
-    /// The plate where it is now.
+    /// The tool where it is now.
     pub fn surface_in_place(&self) -> TriangleSurface {
         let motion = self.body.motion();
         let pose = Pose::from_parts(motion.position.into(), motion.orientation);

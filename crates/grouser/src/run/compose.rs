@@ -1,0 +1,35 @@
+//! Which experiment a scene is: the one place that looks at soil, tool and motion together.
+
+use super::driver::Driver;
+use super::on_bed::OnBed;
+use super::press::Pressing;
+use super::{Ended, Law, Options, Progress, RunError, WithLaw, with_law};
+use crate::scene::{Grains, Scenario, Soil};
+use std::fs;
+
+/// Runs a scene into a folder.
+///
+/// # Errors
+/// When the scene cannot be built, its motion becomes meaningless, or a file cannot be written.
+pub fn run(scenario: &Scenario, options: &Options, progress: &mut dyn Progress) -> Result<Ended, RunError> {
+    fs::create_dir_all(&options.folder)?;
+    let driver = Driver { scenario, options, progress };
+    match &scenario.soil {
+        Soil::Grains(soil) => with_law(&scenario.dials, OnGrains { driver, soil }),
+    }
+}
+
+/// A scene on a bed of grains.
+struct OnGrains<'a> {
+    driver: Driver<'a>,
+    soil: &'a Grains,
+}
+
+impl WithLaw for OnGrains<'_> {
+    type Output = Result<Ended, RunError>;
+    fn with<L: Law>(self, law: L) -> Self::Output {
+        let Self { driver, soil } = self;
+        let scenario = driver.scenario;
+        driver.drive(|progress| OnBed::<L, Pressing<L>>::begin(scenario, soil, law, progress))
+    }
+}

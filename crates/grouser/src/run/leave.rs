@@ -1,0 +1,78 @@
+//! What every run leaves at its end: time series, charts, pictures, summary and report.
+
+use super::clock::Taken;
+use super::driver::{Driver, State};
+use super::{Ended, Experiment, RunError, report};
+use crate::output::summary::{self, Status, Summary, Time};
+use crate::output::write_atomic;
+use std::io;
+
+/// Writes everything that follows from the experiment's state.
+pub(super) fn leave<E: Experiment>(
+    driver: &Driver,
+    state: &State<E>,
+    taken: &Taken,
+    ended: &Result<Ended, RunError>,
+) -> Result<(), RunError> {
+    let folder = &driver.options.folder;
+    let outcome = state.experiment.outcome(driver.scenario);
+    let mut files = vec!["scenario.ron".to_owned(), "summary.json".to_owned(), "report.html".to_owned()];
+    let mut write = |name: String, bytes: &[u8]| -> io::Result<()> {
+        write_atomic(&folder.join(&name), bytes)?;
+        files.push(name);
+        Ok(())
+    };
+    for (name, table) in &outcome.tables {
+        write(format!("{name}.csv"), table.to_csv().as_bytes())?;
+    }
+    for (name, chart) in &outcome.charts {
+        let drawn = |error: Box<dyn std::error::Error + Send + Sync>| io::Error::other(error.to_string());
+        write(format!("{name}.svg"), chart.to_svg().map_err(drawn)?.as_bytes())?;
+        write(format!("{name}.png"), &chart.to_png().map_err(drawn)?)?;
+    }
+    for picture in &outcome.pictures {
+        write(format!("{}.png", picture.name), &picture.png)?;
+    }
+    for (name, bytes) in &outcome.files {
+        write(name.clone(), bytes)?;
+    }
+    files.extend(state.series.iter().map(|series| series.index()));
+    if !matches!(ended, Ok(Ended::Done)) {
+        files.push("checkpoint.bin".into());
+    }
+    let summary = Summary {
+        schema: summary::SCHEMA,
+        scenario: driver.scenario.title.clone(),
+        version: env!("CARGO_PKG_VERSION"),
+        git: driver.options.git.clone(),
+        host: format!(
+            "{} {}, {} processors",
+            std::env::consts::OS,
+            std::env::consts::ARCH,
+            std::thread::available_parallelism().map_or(1, usize::from)
+        ),
+        threads: rayon::current_num_threads(),
+        status: match ended {
+            Ok(Ended::Done) => Status::Done,
+            Ok(Ended::Interrupted) => Status::Interrupted,
+            Err(_) => Status::Failed,
+        },
+        error: ended.as_ref().err().map(ToString::to_string),
+        time: Time {
+            simulated_s: state.time_s,
+            wall_s: taken.wall_s,
+            cpu_s: taken.cpu_s,
+            setup_s: taken.setup_s,
+            steps: state.n_steps,
+        },
+        time_step: outcome.time_step.clone(),
+        energy: outcome.energy.clone(),
+        conventions: outcome.conventions.clone(),
+        metrics: outcome.metrics.clone(),
+        files,
+    };
+    summary.write(folder)?;
+    let page = report::page(driver.scenario, &summary, &outcome);
+    write_atomic(&folder.join("report.html"), page.as_bytes())?;
+    Ok(())
+}
