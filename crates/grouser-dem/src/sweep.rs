@@ -71,12 +71,10 @@ pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
         // Everything is one run, and nobody has to be woken for it.
         return first_turn(0, slabs).and(second_turn(0, slabs));
     }
-    let runs = |slabs: &mut [Slab<P::Real, L::Memory>],
-                turn: &(dyn Fn(usize, &mut [Slab<P::Real, L::Memory>]) -> Pace + Sync)| {
-        let runs = slabs.par_chunks_mut(run_length).enumerate();
-        runs.map(|(run, slabs)| turn(run, slabs)).reduce(|| Pace::STILL, Pace::and)
-    };
-    runs(slabs, &first_turn).and(runs(slabs, &second_turn))
+    let runs = slabs.par_chunks_mut(run_length).enumerate();
+    let pace = runs.map(|(run, slabs)| first_turn(run, slabs)).reduce(|| Pace::STILL, Pace::and);
+    let runs = slabs.par_chunks_mut(run_length).enumerate();
+    pace.and(runs.map(|(run, slabs)| second_turn(run, slabs)).reduce(|| Pace::STILL, Pace::and))
 }
 
 /// Slabs of a run: all of them for one thread, otherwise an even number that gives each thread several runs.
