@@ -21,7 +21,7 @@ pub(super) struct Verify {
 impl Verify {
     pub fn verify(self) -> u8 {
         let is_wanted = |name: &str| self.only.as_ref().is_none_or(|only| name.contains(only.as_str()));
-        let wanted: Vec<_> = cases().iter().filter(|case| is_wanted(case.name)).collect();
+        let wanted: Vec<_> = cases().into_iter().filter(|case| is_wanted(case.name)).collect();
         if wanted.is_empty() {
             let names: Vec<&str> = cases().iter().map(|case| case.name).collect();
             eprintln!(

@@ -2,7 +2,9 @@
 
 mod bodies;
 mod chung_ooi;
+mod solids;
 mod two_bodies;
+mod vehicles;
 
 use serde::Serialize;
 
@@ -86,20 +88,27 @@ pub struct Case {
     /// Name.
     pub name: &'static str,
     /// Computes its rows.
-    pub rows: fn() -> Vec<Row>,
+    pub rows: Box<dyn Fn() -> Vec<Row>>,
 }
 
 /// Every case.
-pub fn cases() -> &'static [Case] {
-    &[
-        Case { name: "chung-ooi-1 two elastic spheres", rows: chung_ooi::test_1 },
-        Case { name: "chung-ooi-2 elastic sphere on a wall", rows: chung_ooi::test_2 },
-        Case { name: "chung-ooi-3 restitution", rows: chung_ooi::test_3 },
-        Case { name: "chung-ooi-4 oblique impacts", rows: chung_ooi::test_4 },
-        Case { name: "chung-ooi-7 spinning spheres", rows: chung_ooi::test_7 },
-        Case { name: "slip-to-roll", rows: two_bodies::slip_to_roll },
-        Case { name: "rolling on an incline", rows: two_bodies::incline },
-        Case { name: "free fall with bounces", rows: two_bodies::bounces },
-        Case { name: "a stack at rest", rows: two_bodies::stack },
-    ]
+pub fn cases() -> Vec<Case> {
+    let grains = GRAINS.iter().map(|&(name, rows)| Case { name, rows: Box::new(rows) });
+    grains.chain(solids::cases()).chain(vehicles::cases()).collect()
 }
+
+/// What a case computes.
+type Rows = fn() -> Vec<Row>;
+
+/// Cases of grains.
+const GRAINS: &[(&str, Rows)] = &[
+    ("chung-ooi-1 two elastic spheres", chung_ooi::test_1),
+    ("chung-ooi-2 elastic sphere on a wall", chung_ooi::test_2),
+    ("chung-ooi-3 restitution", chung_ooi::test_3),
+    ("chung-ooi-4 oblique impacts", chung_ooi::test_4),
+    ("chung-ooi-7 spinning spheres", chung_ooi::test_7),
+    ("slip-to-roll", two_bodies::slip_to_roll),
+    ("rolling on an incline", two_bodies::incline),
+    ("free fall with bounces", two_bodies::bounces),
+    ("a stack at rest", two_bodies::stack),
+];
