@@ -61,7 +61,7 @@ pub use precision::{F32, F64, Mixed, Precision};
 pub use real::Real;
 pub use rotation::{
     ArmNormalisation, Body, ConstantRolling, Couples, ElasticPlasticRolling, Frame, Free, GrainInertia,
-    GrainShape, PlaneShape, Quaternion, Rotating, RotationLaw, Tilting, TiltingSettings,
+    GrainShape, PlaneShape, PlaneTilting, Quaternion, Rotating, RotationLaw, Tilting, TiltingSettings,
 };
 pub use sphere::{Load, Sphere};
 pub use tangential::{Loading, Tangential, mindlin};

@@ -3,9 +3,10 @@
 use crate::candidates::{Candidates, centre};
 use crate::neighbourhood::{Touch, touches};
 use grouser_contact::{
-    Contact, ContactLaw, ContactLedger, Load, Memory, PairTable, Precision, Real, Sphere, Vector,
+    Body, Contact, ContactLaw, ContactLedger, Frame, Load, Memory, PairTable, Precision, Real, RotationLaw,
+    Sphere, Vector,
 };
-use grouser_geometry::{TriangleSurface, Vec3};
+use grouser_geometry::{Orientation, TriangleSurface, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// Cosine of the angle that the normal of a contact may turn in a step and still be the same contact: 45°.
@@ -93,14 +94,15 @@ impl<M> Contacts<M> {
     }
 
     /// Steps 2 to 6 of `docs/theory/surfaces.md` for the grains of `candidates`: adds to their `loads`, gives the opposite to
-    /// the carrier, and shows every contact to `observe`.
+    /// the carrier, and shows every contact to `observe`. Laws that ask for orientations need `orientations`.
     #[inline]
+    #[expect(clippy::too_many_arguments, reason = "one call site for each kind of surface")]
     pub fn pass<P: Precision, L: ContactLaw<P::Real, Memory = M>>(
         &mut self,
         candidates: &Candidates,
         (surface, material): (&TriangleSurface, u32),
         carrier: &mut impl Carrier,
-        spheres: &[Sphere<P>],
+        (spheres, orientations): (&[Sphere<P>], Option<&[Orientation]>),
         loads: &mut [Load<P::Real>],
         step: &Step<L, P::Real>,
         mut observe: impl FnMut(Seen),
@@ -126,14 +128,22 @@ impl<M> Contacts<M> {
                 let overlap = radius - touch.distance;
                 let velocity = carrier.velocity(touch, &point);
                 let spin = carrier.spin(touch, &normal);
-                let contact = contact(sphere, &normal, overlap, [&velocity, &spin], step.time_step);
+                let bodies = bodies::<P, L>(sphere, overlap, orientations.map(|kept| &kept[near.index as usize]));
+                let contact =
+                    contact(sphere, step.law, &bodies, &normal, overlap, [&velocity, &spin], step.time_step);
                 let pair = step.table.pair(sphere.material, material);
-                let (response, memory) = step.law.respond(&contact, pair, memory);
+                let (response, mut memory) = step.law.respond(&contact, pair, memory);
+                let arm = P::Real::from_f64(-touch.distance);
+                let mut torque = contact.normal.cross(response.tangential_force) * arm;
+                if !<L::Rotation as RotationLaw<P::Real>>::IS_SPHERE {
+                    let (couples, remembered) = step.law.couples(&contact, pair, &response, &bodies, memory);
+                    (torque, memory) = (couples.torques[0], remembered);
+                    pass.turning += couples.spent.to_f64() * step.time_step;
+                }
                 now.push(Remembered { id: near.id, normal: normal_in_frame, memory });
                 // 5. Equal and opposite forces at one point.
                 let force = contact.normal * response.normal_force + response.tangential_force;
-                let arm = P::Real::from_f64(-touch.distance);
-                loads[near.index as usize].add(force, contact.normal.cross(response.tangential_force) * arm);
+                loads[near.index as usize].add(force, torque);
                 let force = force.cast::<f64>();
                 let on_surface = -Vec3::new(force.x, force.y, force.z);
                 carrier.receive(touch, &point, on_surface);
@@ -176,9 +186,29 @@ fn recall<M: Copy>(remembered: &[Remembered<M>], id: u32, normals: &[Vec3], k: u
         .map(|(_, contact)| contact.memory)
 }
 
-/// The contact as the law sees it, in the precision of the bed; `velocity` and `spin` are those of the surface.
-fn contact<P: Precision>(
+type FrameOf<P, L> =
+    <<L as ContactLaw<<P as Precision>::Real>>::Rotation as RotationLaw<<P as Precision>::Real>>::Frame;
+type BodyOf<P, L> = Body<<P as Precision>::Real, FrameOf<P, L>>;
+
+/// The grain and the surface as a rotation law sees them.
+fn bodies<P: Precision, L: ContactLaw<P::Real>>(
     sphere: &Sphere<P>,
+    overlap: f64,
+    orientation: Option<&Orientation>,
+) -> [BodyOf<P, L>; 2] {
+    let radius = sphere.radius.to_f64();
+    let frame = orientation.map_or_else(Default::default, |kept| FrameOf::<P, L>::from_quaternion(kept.coords.into()));
+    let moment = sphere.mass * P::Real::from_f64(radius * radius);
+    let arm = P::Real::from_f64(radius - overlap);
+    let grain = Body { arm, spin: sphere.spin, inverse_moment: P::Real::ONE / moment, frame };
+    [grain, Body::at_rest(FrameOf::<P, L>::default())]
+}
+
+/// The contact as the law sees it, in the precision of the bed; `velocity` and `spin` are those of the surface.
+fn contact<P: Precision, L: ContactLaw<P::Real>>(
+    sphere: &Sphere<P>,
+    law: &L,
+    bodies: &[BodyOf<P, L>; 2],
     normal: &Vec3,
     overlap: f64,
     [velocity, spin]: [&Vec3; 2],
@@ -187,8 +217,9 @@ fn contact<P: Precision>(
     let narrow = |v: &Vec3| Vector::new(v.x, v.y, v.z).cast::<P::Real>();
     let real = P::Real::from_f64;
     let normal = narrow(normal);
-    let arm = real(sphere.radius.to_f64() - overlap);
-    let velocity = sphere.velocity - (sphere.spin * arm).cross(normal) - narrow(velocity);
+    // The surface's velocity at the contact point is added to that of a body that rests.
+    let of_grain = law.rotation().velocity_at_contact(normal, sphere.velocity, bodies);
+    let velocity = of_grain - narrow(velocity);
     Contact {
         overlap: real(overlap),
         normal,

@@ -397,11 +397,18 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             let half = T::from_f64(0.5);
             let arms = [radii[0] - half * overlap, radii[1] - half * overlap];
             let (spin_first, spin_second) = (lanes(&self.spin[0], k), lanes(&self.spin[1], k));
-            let rolled = spin_first * arms[0] + spin_second * arms[1];
+            let body = |b: usize, spin| Body {
+                arm: arms[b],
+                spin,
+                inverse_moment: T::ONE / (masses[b] * radii[b] * radii[b]),
+                frame: <FrameOf<T, L>>::load(&self.frame[b], k),
+            };
+            let bodies = [body(0, spin_first), body(1, spin_second)];
+            let centres = lanes(&self.velocity, k);
             let contact = Contact {
                 overlap,
                 normal,
-                velocity: lanes(&self.velocity, k) - rolled.cross(normal),
+                velocity: law.rotation().velocity_at_contact(normal, centres, &bodies),
                 normal_spin: half * (spin_first + spin_second).dot(normal),
                 effective_radius,
                 effective_mass,
@@ -420,13 +427,6 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             if turns_as_sphere::<T, L>() {
                 memory.store(&mut self.memory, k);
             } else {
-                let body = |b: usize, spin| Body {
-                    arm: arms[b],
-                    spin,
-                    inverse_moment: T::ONE / (masses[b] * radii[b] * radii[b]),
-                    frame: <FrameOf<T, L>>::load(&self.frame[b], k),
-                };
-                let bodies = [body(0, spin_first), body(1, spin_second)];
                 let (couples, memory) = law.couples(&contact, &pair, &response, &bodies, memory);
                 memory.store(&mut self.memory, k);
                 for (lanes, torque) in self.spin.iter_mut().zip(couples.torques) {

@@ -87,12 +87,21 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
             }
             is_too_deep |= overlap > LARGEST_OVERLAP * radius;
             let (overlap, arm) = (T::from_f64(overlap), T::from_f64(radius - overlap));
+            let effective_radius = T::from_f64(radius);
+            let mut frame = <FrameOf<T, L>>::default();
+            if <FrameOf<T, L>>::IS_TRACKED {
+                frame = <FrameOf<T, L>>::from_quaternion(input.grains.quaternion(grain));
+            }
+            let inverse_moment = T::ONE / (sphere.mass * effective_radius * effective_radius);
+            let of_grain = Body { arm, spin: sphere.spin, inverse_moment, frame };
+            let bodies = [of_grain, Body::at_rest(<FrameOf<T, L>>::default())];
+            let velocity = input.law.rotation().velocity_at_contact(normal, sphere.velocity, &bodies);
             let contact = Contact {
                 overlap,
                 normal,
-                velocity: sphere.velocity - (sphere.spin * arm).cross(normal),
+                velocity,
                 normal_spin: T::from_f64(0.5) * sphere.spin.dot(normal),
-                effective_radius: T::from_f64(radius),
+                effective_radius,
                 effective_mass: sphere.mass,
                 time_step: input.time_step,
             };
@@ -102,21 +111,7 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
             let mut torque = normal.cross(response.tangential_force) * -arm;
             *memory = remembered;
             if !<L::Rotation as RotationLaw<T>>::IS_SPHERE {
-                let mut frame = <FrameOf<T, L>>::default();
-                if <FrameOf<T, L>>::IS_TRACKED {
-                    frame = <FrameOf<T, L>>::from_quaternion(input.grains.quaternion(grain));
-                }
-                let inverse_moment =
-                    T::ONE / (sphere.mass * contact.effective_radius * contact.effective_radius);
-                let of_grain = Body { arm, spin: sphere.spin, inverse_moment, frame };
-                let at_rest = Body {
-                    arm: T::ZERO,
-                    spin: Vector::ZERO,
-                    inverse_moment: T::ZERO,
-                    frame: Default::default(),
-                };
-                let (couples, remembered) =
-                    input.law.couples(&contact, pair, &response, &[of_grain, at_rest], remembered);
+                let (couples, remembered) = input.law.couples(&contact, pair, &response, &bodies, remembered);
                 (torque, *memory) = (couples.torques[0], remembered);
                 ledger.turning += couples.spent.to_f64() * dt;
             }

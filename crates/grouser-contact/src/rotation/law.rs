@@ -17,6 +17,14 @@ pub struct Body<T, O> {
     pub frame: O,
 }
 
+impl<T: Real, O> Body<T, O> {
+    /// A body that does not turn, touched at its centre: the other side of a rigid wall.
+    #[inline(always)]
+    pub fn at_rest(frame: O) -> Self {
+        Self { arm: T::ZERO, spin: Vector::ZERO, inverse_moment: T::ZERO, frame }
+    }
+}
+
 /// Torques about the two centres, in the world frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Couples<T> {
@@ -58,6 +66,19 @@ pub trait RotationLaw<T: Real>: Copy + Debug + Send + Sync + Serialize + Deseria
     type Memory: Memory<T>;
     /// What it needs to know about orientations.
     type Frame: Frame<T>;
+
+    /// Velocity of the first body against the second where they touch [m/s]; `centres` is that of the first centre against the
+    /// second. Spheres touch on the line between their centres.
+    #[inline(always)]
+    fn velocity_at_contact(
+        &self,
+        normal: Vector<T>,
+        centres: Vector<T>,
+        bodies: &[Body<T, Self::Frame>; 2],
+    ) -> Vector<T> {
+        let rolled = bodies[0].spin * bodies[0].arm + bodies[1].spin * bodies[1].arm;
+        centres - rolled.cross(normal)
+    }
 
     /// Torques and memory after this step.
     fn couples(

@@ -1,6 +1,7 @@
 //! How grains turn: one law, one file.
 
 mod law;
+mod planes;
 mod quaternion;
 mod rolling;
 mod rotating;
@@ -8,6 +9,7 @@ mod shape;
 mod tilting;
 
 pub use law::{Body, Couples, Frame, Free, RotationLaw};
+pub use planes::PlaneTilting;
 pub use quaternion::Quaternion;
 pub use rolling::{ConstantRolling, ElasticPlasticRolling};
 pub use rotating::Rotating;

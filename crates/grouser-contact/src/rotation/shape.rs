@@ -28,7 +28,7 @@ pub enum PlaneShape {
 pub enum GrainShape {
     /// A = 1 in every plane.
     Cube,
-    /// The same A in every plane: the shape of P1's parameter studies.
+    /// Sides 1 : √A : A, one parameter for angular grains: no two sides alike, A₂ = A, A₁ = A₃ = √A, s₁ = √A.
     Angular {
         /// A [-].
         aspect_ratio: f64,
@@ -48,31 +48,68 @@ pub enum GrainShape {
         /// A [-].
         aspect_ratio: f64,
     },
-    /// Any three figures.
+    /// Any three figures. [`crate::Tilting`] takes them only where they are the sections of one body; three times the same
+    /// rectangle is none unless A = 1.
     Planes([PlaneShape; 3]),
 }
 
 impl GrainShape {
     /// The figures in planes 1, 2, 3.
     pub fn planes(&self) -> [PlaneShape; 3] {
-        let rectangle = |aspect_ratio| PlaneShape::Rectangle { aspect_ratio, scale: 1.0 };
+        let scaled = |aspect_ratio, scale| PlaneShape::Rectangle { aspect_ratio, scale };
+        let rectangle = |aspect_ratio| scaled(aspect_ratio, 1.0);
         match *self {
             Self::Cube => [rectangle(1.0); 3],
-            Self::Angular { aspect_ratio } => [rectangle(aspect_ratio); 3],
-            Self::Bar { aspect_ratio: a } => {
-                [PlaneShape::Rectangle { aspect_ratio: 1.0, scale: a }, rectangle(a), rectangle(a)]
+            Self::Angular { aspect_ratio: a } => {
+                let root = a.sqrt();
+                [scaled(root, root), rectangle(a), rectangle(root)]
             }
+            Self::Bar { aspect_ratio: a } => [scaled(1.0, a), rectangle(a), rectangle(a)],
             Self::Plate { aspect_ratio: a } => [rectangle(a), rectangle(a), rectangle(1.0)],
             Self::Disc { aspect_ratio: a } => [rectangle(a), rectangle(a), PlaneShape::Circle { scale: 1.0 }],
             Self::Planes(planes) => planes,
         }
     }
+
+    /// Some figure is a circle.
+    pub fn is_round(&self) -> bool {
+        self.planes().iter().any(|plane| matches!(plane, PlaneShape::Circle { .. }))
+    }
+
+    /// Refuses constants outside the range that the laws have been tested on.
+    fn validate(&self) -> Result<(), ParameterError> {
+        let in_range = |aspect_ratio: f64| {
+            let holds = (0.05..=1.0).contains(&aspect_ratio);
+            let expected = "in [0.05, 1]: A is the short side over the long one, and below 0.05 a grain lies flat up to 87°, \
+                            which the law cannot tell from fixed rotation";
+            ParameterError::check("aspect ratio", aspect_ratio, holds, expected)
+        };
+        match *self {
+            Self::Cube => Ok(()),
+            Self::Angular { aspect_ratio }
+            | Self::Bar { aspect_ratio }
+            | Self::Plate { aspect_ratio }
+            | Self::Disc { aspect_ratio } => in_range(aspect_ratio),
+            Self::Planes(planes) => planes.into_iter().try_for_each(|plane| {
+                let scale = match plane {
+                    PlaneShape::Rectangle { aspect_ratio, scale } => {
+                        in_range(aspect_ratio)?;
+                        scale
+                    }
+                    PlaneShape::Circle { scale } => scale,
+                };
+                let expected =
+                    "in [0.1, 1]: above 1 arms leave the sphere, below 0.1 friction no longer turns the grain";
+                ParameterError::check("arm scale", scale, (0.1..=1.0).contains(&scale), expected)
+            }),
+        }
+    }
 }
 
-/// What the half diagonal d of a rectangle is; P1 does not print it.
+/// How long the arms are; P1 does not print it. d is the half diagonal of a rectangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ArmNormalisation {
-    /// d = r: the rectangle is inscribed in the sphere, no arm is longer than r.
+    /// The longest d is r: no arm in a rotation plane is longer than r. Three rectangles for themselves have d = r each.
     #[default]
     Inscribed,
     /// d = r/cos γ: half the long side is r.
@@ -122,23 +159,20 @@ impl TiltingSettings {
     /// # Errors
     /// Names the constant, its range and the reason.
     pub fn validate(&self) -> Result<(), ParameterError> {
-        for plane in self.shape.planes() {
-            let scale = match plane {
-                PlaneShape::Rectangle { aspect_ratio, scale } => {
-                    let holds = (0.05..=1.0).contains(&aspect_ratio);
-                    let expected = "in [0.05, 1]: A is the short side over the long one, and below 0.05 a grain lies flat \
-                                    up to 87°, which the law cannot tell from fixed rotation";
-                    ParameterError::check("aspect ratio", aspect_ratio, holds, expected)?;
-                    scale
-                }
-                PlaneShape::Circle { scale } => scale,
-            };
-            let expected =
-                "in [0.1, 1]: above 1 arms leave the sphere, below 0.1 friction no longer turns the grain";
-            ParameterError::check("arm scale", scale, (0.1..=1.0).contains(&scale), expected)?;
-        }
+        self.shape.validate()?;
         let width = self.smoothing_rad;
         let expected = "in [0, 0.2] rad: wider, the grain would rest on an edge";
         ParameterError::check("smoothing width", width, (0.0..=0.2).contains(&width), expected)
+    }
+
+    /// Principal moments of inertia over m r² [-]: about axis i that of the figure in plane i, without its scale.
+    pub(crate) fn inertia_ratios(&self) -> [f64; 3] {
+        self.shape.planes().map(|plane| match (plane, self.inertia) {
+            (PlaneShape::Circle { .. }, _) => 0.4,
+            (PlaneShape::Rectangle { .. }, GrainInertia::Inscribed) => 1.0 / 3.0,
+            (PlaneShape::Rectangle { aspect_ratio, .. }, GrainInertia::ThinRod) => {
+                1.0 / (12.0 * aspect_ratio * aspect_ratio)
+            }
+        })
     }
 }

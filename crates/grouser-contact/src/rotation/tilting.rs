@@ -6,111 +6,166 @@
 //!   |      o----- | E_j (long side b)  l_T =        d sin(γ + |θ|)   lever along n
 //!   C-------------'                  θ = angle between the contact plane and side b, γ = arctan A, A = a/b
 //! ```
-//! Both arms are components of the constant vector from C to the centre, ½b sgn(n_j) E_j + ½a sgn(n_k) E_k: no angle is ever
-//! computed.
+//! The three rectangles are the sections of one box (or cylinder, or ball) of half sides h. Its corner below the centre is
+//! at −ℓ, ℓ = Σ h_i sgn(n·E_i) E_i, in units of the distance from the centre to the contact point; in each rotation plane ℓ has
+//! the components l_N and l_T. The torque is ℓ's, and the tangential spring feels the velocity of that corner: the torque of a
+//! normal force is then the slope of F_N ℓ·n, and what the tangential force spends is what the motion loses.
 
 use crate::{
-    ArmNormalisation, Body, Contact, Couples, GrainInertia, PairProperties, ParameterError, PlaneShape,
-    Quaternion, Real, Response, RotationLaw, TiltingSettings, Vector,
+    ArmNormalisation, Body, Contact, Couples, PairProperties, ParameterError, PlaneShape, Quaternion, Real,
+    Response, RotationLaw, TiltingSettings, Vector,
 };
 use serde::{Deserialize, Serialize};
 
-/// The tilting law for grains of one shape. Lengths are in units of the distance from the centre to the contact point.
+/// The tilting law for grains of one shape; `IS_ROUND` where some figure of it is a circle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Tilting {
-    /// Half the long side of the rectangle in planes 1, 2, 3, times the scale [-]; zero for a circle.
-    long: [f64; 3],
-    /// Half the short side [-].
-    short: [f64; 3],
-    /// Radius of the circle [-]; zero for a rectangle.
-    round: [f64; 3],
-    /// One over the width of the passage between corners [-].
-    steepness: f64,
+pub struct Tilting<const IS_ROUND: bool = false> {
+    /// Half sides h over the distance from the centre to the contact point [-].
+    half: [f64; 3],
+    /// 1 where two axes belong to the same circle, else 0; read where `IS_ROUND`.
+    circles: [[f64; 3]; 3],
+    /// Width w of the passage between corners [-], never zero.
+    width: f64,
     inertia_ratios: [f64; 3],
 }
 
-/// Plane i has the side b along the lower and the side a along the higher of the two other axes; the sign is that
-/// of E_j × E_k against E_i.
-const PLANES: [(usize, usize, f64); 3] = [(1, 2, 1.0), (0, 2, -1.0), (0, 1, 1.0)];
-/// Steepness of a jump: any number that is not zero lies beyond it.
-const JUMP: f64 = 1e30;
+/// Width of a jump: any component of a normal that is not zero lies beyond it.
+const JUMP: f64 = 1e-30;
+/// Half sides of one axis in its two planes may differ by rounding of what a user types [-].
+const SAME_SIDE: f64 = 1e-6;
 
-impl Tilting {
+impl<const IS_ROUND: bool> Default for Tilting<IS_ROUND> {
+    /// A ball: no more than a place to read a checkpoint into.
+    fn default() -> Self {
+        Self { half: [1.0; 3], circles: [[1.0; 3]; 3], width: 1.0, inertia_ratios: [0.4; 3] }
+    }
+}
+
+impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
     /// The law for grains of one shape.
     ///
     /// # Errors
-    /// When a constant is outside its range.
+    /// When a constant is outside its range, the figures are not the sections of one body, or one is a circle without `IS_ROUND`.
     pub fn new(settings: &TiltingSettings) -> Result<Self, ParameterError> {
         settings.validate()?;
-        let mut law = Self {
-            long: [0.0; 3],
-            short: [0.0; 3],
-            round: [0.0; 3],
-            steepness: (1.0 / settings.smoothing_rad).min(JUMP),
-            inertia_ratios: [0.4; 3],
-        };
-        for (i, plane) in settings.shape.planes().into_iter().enumerate() {
-            match plane {
-                PlaneShape::Circle { scale } => law.round[i] = scale,
-                PlaneShape::Rectangle { aspect_ratio, scale } => {
-                    // d cos γ and d sin γ with tan γ = A.
-                    let cos = 1.0 / (1.0 + aspect_ratio * aspect_ratio).sqrt();
-                    let long = match settings.arms {
-                        ArmNormalisation::Inscribed => cos,
-                        ArmNormalisation::LongSide => 1.0,
-                    };
-                    (law.long[i], law.short[i]) = (scale * long, scale * long * aspect_ratio);
-                    law.inertia_ratios[i] = match settings.inertia {
-                        GrainInertia::Inscribed => 1.0 / 3.0,
-                        GrainInertia::ThinRod => 1.0 / (12.0 * aspect_ratio * aspect_ratio),
-                    };
-                }
-            }
+        let shape = &settings.shape;
+        let expected = "a law made for circles (`Tilting<true>`): this shape has one";
+        ParameterError::check("roundness", 1.0, IS_ROUND || !shape.is_round(), expected)?;
+        let (mut half, circles) = one_body(&shape.planes())?;
+        if settings.arms == ArmNormalisation::Inscribed {
+            let longest = longest_arm(&half, &circles);
+            half = half.map(|side| side / longest);
         }
-        Ok(law)
+        Ok(Self {
+            half,
+            circles,
+            width: settings.smoothing_rad.max(JUMP),
+            inertia_ratios: settings.inertia_ratios(),
+        })
     }
 
-    /// Torque [N·m] of `force` [N] on a grain turned by `frame`, in the world frame.
+    /// Half sides of the body over the distance from the centre to the contact point [-].
+    pub fn half_sides(&self) -> [f64; 3] {
+        self.half
+    }
+
+    /// Vector from the touching corner to the centre [m] of a grain turned by `frame`, in the world frame. `normal` points from
+    /// the contact into the grain, `arm` [m] is the distance from the centre to the contact point.
     ///
-    /// `normal` points from the contact into the grain, `normal_force` [N] is the force along it, `arm` [m] the distance from the
-    /// centre to the contact point.
+    /// ℓ·n is the height of the centre over the corner; h_i sgn n_i becomes h_i n_i/w within the width of the passage.
+    #[inline(always)]
+    pub fn lever<T: Real>(&self, frame: &Quaternion<T>, normal: Vector<T>, arm: T) -> Vector<T> {
+        let axes = frame.axes();
+        let n = axes.map(|axis| axis.dot(normal));
+        let one = T::ONE;
+        let signs = if IS_ROUND {
+            let squares = n.map(|component| component * component);
+            let width = T::from_f64(self.width);
+            [0, 1, 2].map(|i| {
+                let [a, b, c] = self.circles[i].map(T::from_f64);
+                n[i] / (squares[0] * a + squares[1] * b + squares[2] * c).sqrt().max(width)
+            })
+        } else {
+            let steepness = T::from_f64(1.0 / self.width);
+            n.map(|component| (component * steepness).max(-one).min(one))
+        };
+        let [a, b, c] = [0, 1, 2].map(|i| axes[i] * (signs[i] * (T::from_f64(self.half[i]) * arm)));
+        a + b + c
+    }
+
+    /// Torque [N·m] of `force` [N] on a grain turned by `frame`, in the world frame; arguments as for [`Tilting::lever`].
     #[inline(always)]
     pub fn torque<T: Real>(
         &self,
         frame: &Quaternion<T>,
         normal: Vector<T>,
-        normal_force: T,
         force: Vector<T>,
         arm: T,
     ) -> Vector<T> {
-        let axes = frame.axes();
-        let n = axes.map(|axis| axis.dot(normal));
-        let f = axes.map(|axis| axis.dot(force));
-        let squares = n.map(|component| component * component);
-        let (steepness, one) = (T::from_f64(self.steepness), T::ONE);
-        let signs = n.map(|component| (component * steepness).max(-one).min(one));
-        let mut torque = [T::ZERO; 3];
-        let mut torsion = T::ZERO;
-        for (i, (j, k, sign)) in PLANES.into_iter().enumerate() {
-            let (long, short) = (T::from_f64(sign * self.long[i]), T::from_f64(sign * self.short[i]));
-            let round = T::from_f64(sign * self.round[i]);
-            // Arms are scaled by the length of the projected normal, so that n_j² + n_k² ≤ 1 stands in for a unit vector.
-            let length = (squares[j] + squares[k]).sqrt();
-            let lever_j = length * signs[j] * long + n[j] * round;
-            let lever_k = length * signs[k] * short + n[k] * round;
-            torque[i] = f[j] * lever_k - f[k] * lever_j;
-            torsion += n[i] * (n[j] * lever_k - n[k] * lever_j);
-        }
-        // A force along the normal has no moment about its own line; the sum over planes would leave one.
-        let torsion = torsion * normal_force;
-        let [a, b, c] = [0, 1, 2].map(|i| axes[i] * ((torque[i] - n[i] * torsion) * arm));
-        a + b + c
+        force.cross(self.lever(frame, normal, arm))
+    }
+
+    /// Levers of both bodies. From the second one the normal is opposite, and so is its lever: both are given for `normal`.
+    #[inline(always)]
+    fn levers<T: Real>(&self, normal: Vector<T>, bodies: &[Body<T, Quaternion<T>>; 2]) -> [Vector<T>; 2] {
+        [0, 1].map(|b| self.lever(&bodies[b].frame, normal, bodies[b].arm))
     }
 }
 
-impl<T: Real> RotationLaw<T> for Tilting {
+/// Half sides of the body whose sections by the planes through two of its axes are `planes`, and which axes lie in one circle;
+/// half the long side of an unscaled rectangle is 1.
+fn one_body(planes: &[PlaneShape; 3]) -> Result<([f64; 3], [[f64; 3]; 3]), ParameterError> {
+    let mut circles = [[0.0; 3]; 3];
+    let mut seen: [Vec<f64>; 3] = Default::default();
+    for (i, plane) in planes.iter().enumerate() {
+        let [j, k] = [[1, 2], [0, 2], [0, 1]][i];
+        let (long, short) = match *plane {
+            PlaneShape::Rectangle { aspect_ratio, scale } => (scale, scale * aspect_ratio),
+            PlaneShape::Circle { scale } => {
+                (circles[j][k], circles[k][j]) = (1.0, 1.0);
+                (scale, scale)
+            }
+        };
+        seen[j].push(long);
+        seen[k].push(short);
+        circles[i][i] = 1.0;
+    }
+    for sides in &seen {
+        let mismatch = (sides[0] / sides[1] - 1.0).abs();
+        let expected = "the same half side of an axis from both planes that contain it (bar: A1 = 1, s1 = A, A2 = A3 = A): else the \
+                        way from plane to plane around an axis yields work, and grains drive themselves; three rectangles \
+                        for themselves are the law `PlaneTilting`";
+        ParameterError::check("mismatch of the figures", mismatch, mismatch <= SAME_SIDE, expected)?;
+    }
+    let n_circles = planes.iter().filter(|plane| matches!(plane, PlaneShape::Circle { .. })).count();
+    let expected = "no circle, one (a cylinder) or three (a ball)";
+    ParameterError::check("number of circles", n_circles as f64, n_circles != 2, expected)?;
+    Ok((seen.map(|sides| sides[0]), circles))
+}
+
+/// The longest half diagonal of a section; a circle's radius.
+fn longest_arm(half: &[f64; 3], circles: &[[f64; 3]; 3]) -> f64 {
+    let arm = |[j, k]: [usize; 2]| if circles[j][k] > 0.0 { half[j] } else { half[j].hypot(half[k]) };
+    [[1, 2], [0, 2], [0, 1]].map(arm).into_iter().fold(0.0, f64::max)
+}
+
+impl<T: Real, const IS_ROUND: bool> RotationLaw<T> for Tilting<IS_ROUND> {
     type Memory = ();
     type Frame = Quaternion<T>;
+
+    /// Tangentially the corners' velocity, so that the tangential force spends what its torques take; along the normal that of the
+    /// spheres, whose overlap it changes.
+    #[inline(always)]
+    fn velocity_at_contact(
+        &self,
+        normal: Vector<T>,
+        centres: Vector<T>,
+        bodies: &[Body<T, Quaternion<T>>; 2],
+    ) -> Vector<T> {
+        let [first, second] = self.levers(normal, bodies);
+        let turned = bodies[0].spin.cross(first) + bodies[1].spin.cross(second);
+        centres - turned + normal * turned.dot(normal)
+    }
 
     #[inline(always)]
     fn couples(
@@ -121,14 +176,14 @@ impl<T: Real> RotationLaw<T> for Tilting {
         bodies: &[Body<T, Quaternion<T>>; 2],
         (): (),
     ) -> (Couples<T>, ()) {
-        let (normal, normal_force) = (contact.normal, response.normal_force);
-        let force = normal * normal_force + response.tangential_force;
-        // From the second body normal and force are both opposite, which leaves the torque as it is.
-        let torques =
-            [0, 1].map(|b| self.torque(&bodies[b].frame, normal, normal_force, force, bodies[b].arm));
-        let of_spheres = Couples::of_spheres(contact, response, bodies).torques;
-        let spent = |b: usize| (of_spheres[b] - torques[b]).dot(bodies[b].spin);
-        (Couples { torques, spent: spent(0) + spent(1) }, ())
+        let pushed = contact.normal * response.normal_force;
+        let force = pushed + response.tangential_force;
+        let levers = self.levers(contact.normal, bodies);
+        let turned = bodies[0].spin.cross(levers[0]) + bodies[1].spin.cross(levers[1]);
+        // What lifting the centres over the corners takes.
+        let lifted = turned.dot(pushed);
+        let torques = levers.map(|lever| force.cross(lever));
+        (Couples { torques, spent: lifted }, ())
     }
 
     #[inline(always)]

@@ -1,6 +1,7 @@
 //! Laws against closed forms and published numbers.
 
 mod dlr;
+mod plane_tilting;
 mod rolling;
 mod tilting;
 
