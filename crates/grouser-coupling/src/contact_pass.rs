@@ -109,6 +109,10 @@ impl<M> Contacts<M> {
     ) where
         M: Memory<P::Real>,
     {
+        assert!(
+            orientations.is_some() || !asks_for_orientations::<P, L>(),
+            "this contact law asks for orientations"
+        );
         let mut pass = ContactLedger::default();
         let mut now = Vec::with_capacity(self.remembered.len());
         self.deepest = None;
@@ -128,7 +132,8 @@ impl<M> Contacts<M> {
                 let overlap = radius - touch.distance;
                 let velocity = carrier.velocity(touch, &point);
                 let spin = carrier.spin(touch, &normal);
-                let bodies = bodies::<P, L>(sphere, overlap, orientations.map(|kept| &kept[near.index as usize]));
+                let bodies =
+                    bodies::<P, L>(sphere, overlap, orientations.map(|kept| &kept[near.index as usize]));
                 let contact =
                     contact(sphere, step.law, &bodies, &normal, overlap, [&velocity, &spin], step.time_step);
                 let pair = step.table.pair(sphere.material, material);
@@ -190,6 +195,11 @@ type FrameOf<P, L> =
     <<L as ContactLaw<<P as Precision>::Real>>::Rotation as RotationLaw<<P as Precision>::Real>>::Frame;
 type BodyOf<P, L> = Body<<P as Precision>::Real, FrameOf<P, L>>;
 
+/// Law `L` must know how grains are turned; known when compiled.
+pub(crate) const fn asks_for_orientations<P: Precision, L: ContactLaw<P::Real>>() -> bool {
+    <FrameOf<P, L> as Frame<P::Real>>::IS_TRACKED
+}
+
 /// The grain and the surface as a rotation law sees them.
 fn bodies<P: Precision, L: ContactLaw<P::Real>>(
     sphere: &Sphere<P>,
@@ -197,7 +207,8 @@ fn bodies<P: Precision, L: ContactLaw<P::Real>>(
     orientation: Option<&Orientation>,
 ) -> [BodyOf<P, L>; 2] {
     let radius = sphere.radius.to_f64();
-    let frame = orientation.map_or_else(Default::default, |kept| FrameOf::<P, L>::from_quaternion(kept.coords.into()));
+    let frame = orientation
+        .map_or_else(Default::default, |kept| FrameOf::<P, L>::from_quaternion(kept.coords.into()));
     let moment = sphere.mass * P::Real::from_f64(radius * radius);
     let arm = P::Real::from_f64(radius - overlap);
     let grain = Body { arm, spin: sphere.spin, inverse_moment: P::Real::ONE / moment, frame };

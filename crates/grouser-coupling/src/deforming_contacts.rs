@@ -2,11 +2,11 @@
 
 use crate::candidates::{Candidates, Margin};
 use crate::closest_point::natural_coordinates;
-use crate::contact_pass::{Carrier, Contacts, Deepest, Seen, Step};
+use crate::contact_pass::{Carrier, Contacts, Deepest, Seen, Step, asks_for_orientations};
 use crate::mirror::Mirror;
 use crate::neighbourhood::Touch;
 use grouser_contact::{ContactLaw, ContactLedger, Load, Memory, Precision, Sphere};
-use grouser_geometry::{TriangleSurface, Vec3};
+use grouser_geometry::{Orientation, TriangleSurface, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// Contacts of the deforming surface of one solid with the grains of one bed, and what they remember.
@@ -125,6 +125,23 @@ impl<M> DeformingContacts<M> {
     ) where
         M: Memory<P::Real>,
     {
+        const { assert!(!asks_for_orientations::<P, L>(), "angular grains: use `forces_on_turned`") };
+        self.forces_on_turned((spheres, ids, None), loads, step, observe);
+    }
+
+    /// [`Self::forces`] on grains whose `orientations` are kept; `None` where the law does not ask for them.
+    ///
+    /// # Panics
+    /// When the law asks for orientations and there are none.
+    pub fn forces_on_turned<P: Precision, L: ContactLaw<P::Real, Memory = M>>(
+        &mut self,
+        (spheres, ids, orientations): (&[Sphere<P>], &[u32], Option<&[Orientation]>),
+        loads: &mut [Load<P::Real>],
+        step: &Step<L, P::Real>,
+        observe: impl FnMut(Seen),
+    ) where
+        M: Memory<P::Real>,
+    {
         // 1. Grains near the surface.
         let travel = step.fastest * step.time_step + std::mem::take(&mut self.moved);
         self.candidates.refresh(&self.surface, |place| *place, (spheres, ids), travel, self.margin);
@@ -133,7 +150,15 @@ impl<M> DeformingContacts<M> {
         let mut carrier =
             Deforming { surface: &self.surface, velocity: &self.velocity, force: &mut self.force };
         let surface = (&self.surface, self.material);
-        self.contacts.pass(&self.candidates, surface, &mut carrier, spheres, loads, step, observe);
+        self.contacts.pass(
+            &self.candidates,
+            surface,
+            &mut carrier,
+            (spheres, orientations),
+            loads,
+            step,
+            observe,
+        );
     }
 
     /// Gives the forces of the last step to the nodes: calls `add(node, force)` [N], in an order that is always the same.

@@ -1,10 +1,10 @@
 //! Contacts between grains and a triangle surface that moves as a rigid body.
 
 use crate::candidates::{Candidates, Margin};
-use crate::contact_pass::{Carrier, Contacts, Deepest, Seen, Step};
+use crate::contact_pass::{Carrier, Contacts, Deepest, Seen, Step, asks_for_orientations};
 use crate::neighbourhood::Touch;
 use grouser_contact::{ContactLaw, ContactLedger, Load, Memory, Precision, Sphere};
-use grouser_geometry::{RigidMotion, TriangleSurface, Vec3, Wrench};
+use grouser_geometry::{Orientation, RigidMotion, TriangleSurface, Vec3, Wrench};
 use serde::{Deserialize, Serialize};
 
 /// Contacts of one surface with the grains of one bed, and what they remember.
@@ -84,10 +84,31 @@ impl<M> SurfaceContacts<M> {
     }
 
     /// [`Self::forces`], with every contact shown to `observe`, by rising number of the grain.
+    ///
+    /// Laws that ask for orientations do not compile here: see [`Self::forces_on_turned`].
     pub fn forces_seen<P: Precision, L: ContactLaw<P::Real, Memory = M>>(
         &mut self,
         motion: &RigidMotion,
         (spheres, ids): (&[Sphere<P>], &[u32]),
+        loads: &mut [Load<P::Real>],
+        step: &Step<L, P::Real>,
+        observe: impl FnMut(Seen),
+    ) -> Wrench
+    where
+        M: Memory<P::Real>,
+    {
+        const { assert!(!asks_for_orientations::<P, L>(), "angular grains: use `forces_on_turned`") };
+        self.forces_on_turned(motion, (spheres, ids, None), loads, step, observe)
+    }
+
+    /// [`Self::forces_seen`] on grains whose `orientations` are kept; `None` where the law does not ask for them.
+    ///
+    /// # Panics
+    /// When the law asks for orientations and there are none.
+    pub fn forces_on_turned<P: Precision, L: ContactLaw<P::Real, Memory = M>>(
+        &mut self,
+        motion: &RigidMotion,
+        (spheres, ids, orientations): (&[Sphere<P>], &[u32], Option<&[Orientation]>),
         loads: &mut [Load<P::Real>],
         step: &Step<L, P::Real>,
         observe: impl FnMut(Seen),
@@ -103,7 +124,15 @@ impl<M> SurfaceContacts<M> {
         // 2. to 6.
         let mut carrier = Rigid { motion, total: Wrench::default() };
         let surface = (&self.surface, self.material);
-        self.contacts.pass(&self.candidates, surface, &mut carrier, spheres, loads, step, observe);
+        self.contacts.pass(
+            &self.candidates,
+            surface,
+            &mut carrier,
+            (spheres, orientations),
+            loads,
+            step,
+            observe,
+        );
         carrier.total
     }
 

@@ -212,3 +212,29 @@ fn the_order_in_which_grains_are_stored_does_not_matter() {
     let mixed: Vec<usize> = (0..81).map(|n| n * 37 % 81).collect();
     assert_eq!(run(&forward), run(&mixed));
 }
+
+#[test]
+fn an_angular_grain_feels_its_edge_on_a_surface_as_on_a_plane() {
+    // A cube that stands on an edge of half its height beside the normal, turned by 20° about y; 10 µm deep.
+    let rotation = Tilting::<false>::new(&TiltingSettings::of(GrainShape::Cube)).unwrap();
+    let law = Rotating { forces: HertzMindlin::<false, false>, rotation };
+    let table = table();
+    let turned = Orientation::from_scaled_axis(Vec3::y() * 20_f64.to_radians());
+    let radius = 0.01;
+    let sphere = Sphere::<F64> {
+        position: Vector::new(0.011, 0.013, radius - 1e-5),
+        radius,
+        mass: 0.01,
+        ..Default::default()
+    };
+    let mut loads = [Load::default()];
+    let mut contacts = SurfaceContacts::new(plane(1.0, 1.0, 10, 10).unwrap(), 0);
+    let step = Step { law: &law, table: &table, time_step: 1e-6, fastest: 0.0 };
+    let grains = (&[sphere][..], &[0][..], Some(&[turned][..]));
+    contacts.forces_on_turned(&RigidMotion::default(), grains, &mut loads, &step, |_| ());
+    let force = loads[0].force.z;
+    // l_N = r cos(45° + 20°), against the tilt.
+    let expected = -force * (radius - 1e-5) * 65_f64.to_radians().cos();
+    assert!(force > 0.0 && (loads[0].torque.y - expected).abs() < 1e-9 * expected.abs());
+    assert!(loads[0].torque.x.abs() < 1e-12 && loads[0].torque.z.abs() < 1e-12);
+}
