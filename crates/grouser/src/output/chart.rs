@@ -21,7 +21,7 @@ pub struct Chart {
 /// One set of points.
 #[derive(Debug, Clone)]
 pub struct Series {
-    /// Name in the legend.
+    /// Name in the legend; without one the series is not in it.
     pub name: String,
     /// Which of the palette's colours; series of one thing share it.
     pub colour: usize,
@@ -135,7 +135,7 @@ impl Chart {
         scale: f64,
     ) -> Result<(), Failure> {
         let px = |length: f64| (length * scale).round() as i32;
-        for (row, series) in self.series.iter().enumerate() {
+        for (row, series) in self.series.iter().filter(|series| !series.name.is_empty()).enumerate() {
             let style = self.style(series, px(2.0) as u32);
             let (x, y) = (corner.0 + px(14.0), corner.1 + px(18.0) + row as i32 * px(19.0));
             let line = |from: f64, to: f64| PathElement::new([(x + px(from), y), (x + px(to), y)], style);

@@ -53,6 +53,35 @@ impl Table {
         at.map_or(Vec::new(), |at| self.rows().map(|row| row[at]).collect())
     }
 
+    /// Reads what [`Table::to_csv`] wrote; `None` for anything else.
+    pub fn from_csv(text: &str) -> Option<Self> {
+        let mut lines = text.lines();
+        let column = |head: &str| match head.split_once(" [") {
+            Some((name, unit)) => Column { name: name.into(), unit: unit.trim_end_matches(']').into() },
+            None => Column { name: head.into(), unit: "-".into() },
+        };
+        let columns: Vec<Column> = lines.next()?.split(',').map(column).collect();
+        let mut rows = Vec::new();
+        for line in lines {
+            let before = rows.len();
+            for value in line.split(',') {
+                rows.push(value.parse().ok()?);
+            }
+            if rows.len() - before != columns.len() {
+                return None;
+            }
+        }
+        Some(Self { columns, rows })
+    }
+
+    /// Name and unit of a column, as an axis is labelled: `sinkage [m]`.
+    pub fn label(&self, name: &str) -> String {
+        match self.columns.iter().find(|column| column.name == name) {
+            Some(Column { unit, .. }) if unit != "-" => format!("{name} [{unit}]"),
+            _ => name.to_owned(),
+        }
+    }
+
     /// CSV with one line `name_unit` of heads; numbers in the fewest digits that read back to the same bits.
     pub fn to_csv(&self) -> String {
         let head = |column: &Column| match column.unit.as_str() {
@@ -83,6 +112,10 @@ mod tests {
         let read: Vec<f64> =
             csv.lines().skip(1).flat_map(|line| line.split(',').map(|v| v.parse().unwrap())).collect();
         assert_eq!(read, values);
+        assert_eq!(Table::from_csv(&csv).as_ref(), Some(&table));
+        assert!(Table::from_csv(&csv.replace(",", ",0,")).is_some_and(|other| other != table));
+        assert_eq!(Table::from_csv("time [s]\n1,2\n"), None);
+        assert_eq!([table.label("time"), table.label("slip")], ["time [s]", "slip"]);
         assert_eq!(table.column("slip"), [values[1], values[3]]);
         assert!(table.column("absent").is_empty());
     }

@@ -3,6 +3,7 @@
 use super::driver::Driver;
 use super::on_bed::OnBed;
 use super::press::Pressing;
+use super::study;
 use super::{Ended, Law, Options, Progress, RunError, WithLaw, with_law};
 use crate::scene::{Grains, Scenario, Soil};
 use std::fs;
@@ -14,6 +15,9 @@ use std::fs;
 pub fn run(scenario: &Scenario, options: &Options, progress: &mut dyn Progress) -> Result<Ended, RunError> {
     fs::create_dir_all(&options.folder)?;
     let driver = Driver { scenario, options, progress };
+    if let Some(study) = &scenario.study {
+        return study::run(driver, study);
+    }
     match &scenario.soil {
         Soil::Grains(soil) => with_law(&scenario.dials, OnGrains { driver, soil }),
     }

@@ -1,7 +1,8 @@
 //! Any experiment from its beginning, or from a checkpoint, to its end: checkpoints, interruptions, frames, progress.
 
 use super::clock::{Clock, Pace};
-use super::{Ended, Experiment, Progress, RunError, Stage, leave};
+use super::leave::{Left, leave};
+use super::{Ended, Experiment, Progress, RunError, Stage};
 use crate::output::{Series, checkpoint, write_atomic};
 use crate::scene::{Scenario, resolved};
 use serde::{Deserialize, Serialize};
@@ -53,7 +54,10 @@ impl Driver<'_> {
         let mut clock = Clock::start();
         let mut state = if self.options.resumes { self.resumed()? } else { self.begun(begin)? };
         let ended = self.go(&mut state, &mut clock);
-        leave::leave(&self, &state, &clock.stop(), &ended)?;
+        let State { experiment, series, n_steps, time_s, .. } = &state;
+        let outcome = experiment.outcome(self.scenario);
+        let left = Left { outcome, series, n_steps: *n_steps, time_s: *time_s };
+        leave(&self, left, &clock.stop(), &ended)?;
         ended
     }
 

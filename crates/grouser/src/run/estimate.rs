@@ -2,7 +2,7 @@
 
 use super::indenter::Indenter;
 use super::{Law, Materials, SetupError, WithLaw, bed, time_step, with_law};
-use crate::scene::{Grains, Motion, Scenario, Soil};
+use crate::scene::{Grains, Motion, Scenario, Soil, Study, variant};
 use grouser_dem::{Domain, Failure, sphere};
 use grouser_geometry::Vec3;
 use std::time::{Duration, Instant};
@@ -24,9 +24,24 @@ const BYTES_PER_GRAIN: usize = 500;
 /// # Errors
 /// When the scene cannot be built.
 pub fn estimate(scenario: &Scenario) -> Result<Estimate, SetupError> {
+    if let Some(study) = &scenario.study {
+        return of_study(scenario, study);
+    }
     match &scenario.soil {
         Soil::Grains(soil) => on_grains(scenario, soil),
     }
+}
+
+/// Estimates a study by its first variant.
+fn of_study(scenario: &Scenario, study: &Study) -> Result<Estimate, SetupError> {
+    let variants = study.variants();
+    let Some(Ok(first)) = variants.first().map(|each| variant(scenario, each)) else {
+        return Ok(Estimate::default());
+    };
+    let mut estimate = estimate(&first)?;
+    estimate.lines.insert(0, ("variants", format!("{}; what follows is the first of them", variants.len())));
+    estimate.wall = estimate.wall.map(|wall| wall * variants.len() as u32);
+    Ok(estimate)
 }
 
 /// Estimates a scene on grains; takes about a fifth of a second, for the measurement.

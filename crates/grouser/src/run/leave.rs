@@ -1,21 +1,30 @@
 //! What every run leaves at its end: time series, charts, pictures, summary and report.
 
 use super::clock::Taken;
-use super::driver::{Driver, State};
-use super::{Ended, Experiment, RunError, report};
+use super::driver::Driver;
+use super::{Ended, Outcome, RunError, report};
+use crate::output::Series;
 use crate::output::summary::{self, Status, Summary, Time};
 use crate::output::write_atomic;
 use std::io;
 
-/// Writes everything that follows from the experiment's state.
-pub(super) fn leave<E: Experiment>(
+/// What has come of a run, and how much was simulated.
+pub(super) struct Left<'a> {
+    pub outcome: Outcome,
+    pub series: &'a [Series],
+    pub n_steps: u64,
+    pub time_s: f64,
+}
+
+/// Writes everything that is left.
+pub(super) fn leave(
     driver: &Driver,
-    state: &State<E>,
+    left: Left,
     taken: &Taken,
     ended: &Result<Ended, RunError>,
 ) -> Result<(), RunError> {
     let folder = &driver.options.folder;
-    let outcome = state.experiment.outcome(driver.scenario);
+    let Left { outcome, series, n_steps, time_s } = left;
     let mut files = vec!["scenario.ron".to_owned(), "summary.json".to_owned(), "report.html".to_owned()];
     let mut write = |name: String, bytes: &[u8]| -> io::Result<()> {
         write_atomic(&folder.join(&name), bytes)?;
@@ -36,7 +45,7 @@ pub(super) fn leave<E: Experiment>(
     for (name, bytes) in &outcome.files {
         write(name.clone(), bytes)?;
     }
-    files.extend(state.series.iter().map(|series| series.index()));
+    files.extend(series.iter().map(|series| series.index()));
     if !matches!(ended, Ok(Ended::Done)) {
         files.push("checkpoint.bin".into());
     }
@@ -59,11 +68,11 @@ pub(super) fn leave<E: Experiment>(
         },
         error: ended.as_ref().err().map(ToString::to_string),
         time: Time {
-            simulated_s: state.time_s,
+            simulated_s: time_s,
             wall_s: taken.wall_s,
             cpu_s: taken.cpu_s,
             setup_s: taken.setup_s,
-            steps: state.n_steps,
+            steps: n_steps,
         },
         time_step: outcome.time_step.clone(),
         energy: outcome.energy.clone(),

@@ -20,6 +20,8 @@ mod press_outcome;
 mod progress;
 mod report;
 mod rigid_tool;
+mod study;
+mod study_outcome;
 mod time_step;
 mod tool_ledger;
 
@@ -61,6 +63,9 @@ pub enum SetupError {
     /// The file of a tool's surface.
     #[error("{0}")]
     Mesh(String),
+    /// A variant of a study.
+    #[error("{0}")]
+    Variant(String),
     /// The settling bed did not come to rest.
     #[error(
         "the bed did not settle within {longest_s} s: kinetic energy over Σ m g r is {ratio:.1e}, expected {asked:.1e}; \

@@ -12,6 +12,7 @@ mod read;
 mod reference;
 mod soil;
 mod source;
+mod study;
 mod tool;
 mod validate;
 
@@ -21,10 +22,11 @@ pub use material::{Material, Pair};
 pub use mesh::Mesh;
 pub use motion::{Motion, Press};
 pub use outputs::Outputs;
-pub use read::{dialect, read, resolved};
+pub use read::{dialect, read, resolved, variant};
 pub use reference::{PlateCurve, PressureSinkage, Reference};
 pub use soil::{Container, Grains, Layer, Settle, Side, Sizes, Soil};
 pub use source::Source;
+pub use study::{Axis, Choice, Curves, Study, Trend, Variant};
 pub use tool::{Plates, Tool};
 pub use validate::{Problem, validate};
 
@@ -68,6 +70,9 @@ pub struct Scenario {
     /// What is written, and how often.
     #[serde(default)]
     pub outputs: Outputs,
+    /// The same scene over several values, and what is compared.
+    #[serde(default)]
+    pub study: Option<Study>,
     /// What `--quick` replaces: path of a value → the value written there.
     #[serde(default)]
     pub quick: BTreeMap<String, Box<RawValue>>,

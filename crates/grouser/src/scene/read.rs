@@ -1,10 +1,11 @@
 //! From text to a checked scenario, and back with every default written out.
 
-use super::{Pair, Scenario, Source, Tool, validate};
+use super::{Pair, Scenario, Source, Study, Tool, Variant, validate};
 use crate::diagnostic::Diagnostic;
 use ron::error::{Error, SpannedError};
 use ron::extensions::Extensions;
 use ron::ser::PrettyConfig;
+use std::collections::BTreeMap;
 
 /// How scenarios are written: optional parts without `Some`, payloads of variants without a second bracket.
 pub fn dialect() -> ron::Options {
@@ -46,7 +47,10 @@ pub fn read(
     }
     let problems = validate(&scenario);
     if problems.is_empty() {
-        return Ok(scenario);
+        let variants = scenario.study.iter().flat_map(Study::variants);
+        let refused = variants.filter_map(|each| variant(&scenario, &each).err()).flatten();
+        let messages: Vec<Diagnostic> = refused.collect();
+        return if messages.is_empty() { Ok(scenario) } else { Err(messages) };
     }
     Err(problems
         .into_iter()
@@ -61,6 +65,16 @@ pub fn resolved(scenario: &Scenario) -> String {
     let text =
         dialect().to_string_pretty(scenario, pretty).expect("a scenario holds nothing RON cannot write");
     text + "\n"
+}
+
+/// One combination of a study as a scenario of its own.
+///
+/// # Errors
+/// Messages about what the combination makes of the scenario.
+pub fn variant(scenario: &Scenario, variant: &Variant) -> Result<Scenario, Vec<Diagnostic>> {
+    let title = format!("{}: {}", scenario.title, variant.labels.join(", "));
+    let base = Scenario { study: None, quick: BTreeMap::new(), title, ..scenario.clone() };
+    read(&format!("study, {}", variant.labels.join(", ")), &resolved(&base), false, &variant.sets)
 }
 
 fn parse(source: &Source) -> Result<Scenario, Diagnostic> {

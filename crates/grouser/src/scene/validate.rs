@@ -2,6 +2,7 @@
 
 mod grains;
 mod press;
+mod study;
 
 use super::{Motion, Outputs, Reference, Scenario, Soil};
 use crate::diagnostic::Diagnostic;
@@ -71,6 +72,9 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
     check.positive("outputs.vtk_every_s", vtk_every_s, "a time [s]");
     check.positive("outputs.checkpoint_every_s", checkpoint_every_s, "a time [s]");
     references(&mut check, scenario);
+    if let Some(study) = &scenario.study {
+        study::validate(&mut check, study);
+    }
     check.problems
 }
 

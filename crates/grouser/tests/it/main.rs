@@ -3,6 +3,7 @@
 mod bytes;
 mod killed;
 mod messages;
+mod study;
 
 use std::path::Path;
 use std::process::{Command, Output};
