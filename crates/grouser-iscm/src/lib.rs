@@ -46,6 +46,8 @@ pub mod rolling_resistance;
 pub mod route;
 pub mod run;
 pub mod rut;
+pub mod shear;
 pub mod terrain;
 pub mod vehicle;
 pub mod verification;
+pub mod wheel;

@@ -189,7 +189,7 @@ pub enum PressureError {
 }
 
 /// Checks that a parameter is finite and above zero.
-fn positive(law: &'static str, parameter: &'static str, value: f64) -> Result<(), PressureError> {
+pub(crate) fn positive(law: &'static str, parameter: &'static str, value: f64) -> Result<(), PressureError> {
     if value.is_finite() && value > 0.0 {
         Ok(())
     } else {

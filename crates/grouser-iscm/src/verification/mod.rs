@@ -4,6 +4,7 @@ mod forces;
 mod machines;
 mod rolling;
 mod ruts;
+mod shear;
 
 use serde::Serialize;
 
@@ -29,6 +30,19 @@ pub struct Row {
 }
 
 impl Row {
+    /// A case without a result.
+    fn missing(case: &'static str, quantity: &str) -> Self {
+        Self {
+            case,
+            quantity: quantity.into(),
+            computed: f64::NAN,
+            reference: 0.0,
+            tolerance: 0.0,
+            unit: "-",
+            source: "must exist",
+        }
+    }
+
     /// Whether the difference stays within the tolerance.
     pub fn is_passed(&self) -> bool {
         (self.computed - self.reference).abs() <= self.tolerance
@@ -50,4 +64,8 @@ pub const CASES: &[Case] = &[
     ("P2 test 19: rolling resistance of a bogie", rolling::bogie_rolling_down),
     ("P2 test 24: spatial weights", forces::spatial_weights),
     ("P2 test 25: restart", rolling::restart),
+    ("rigid wheel with shear: closed form", shear::rigid_wheel_integrals),
+    ("rigid wheel with shear: grid", shear::wheel_on_the_grid),
+    ("rigid wheel with shear: energy", shear::energy),
+    ("driven track with shear", shear::driven_track),
 ];
