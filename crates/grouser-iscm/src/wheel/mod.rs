@@ -25,7 +25,7 @@
 //! };
 //! // Plastic ground carries the front half only: w K (half a circular segment) = 9810 N.
 //! let point = closed_form::operating_point(&wheel, &soil, 0.2, 0.0)?;
-//! assert!((point.sinkage - 0.073_688).abs() < 1e-5, "{}", point.sinkage);
+//! assert!((point.sinkage - 0.073_854).abs() < 1e-6, "{}", point.sinkage);
 //! // Without shear the wheel is dragged: w ∫ p dz = w K z²/2.
 //! assert!((point.drawbar_pull + 0.5 * 1.5e6 * point.sinkage.powi(2) / 2.0).abs() < 1e-6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
