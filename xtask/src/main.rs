@@ -2,6 +2,7 @@
 
 mod bench;
 mod grouser;
+mod peers;
 mod process;
 mod test;
 mod tidy;
@@ -18,6 +19,7 @@ Everything done to this repository:
   cargo xtask test              format, lints, unit and doc tests, verification, every scene with --quick, tidiness
   cargo xtask tidy              the repository's rules alone
   cargo xtask bench [GROUP] …   criterion benches and throughput figures; what follows GROUP goes to the program
+  cargo xtask peers [--json FILE]  the same beds in LAMMPS, LIGGGHTS and Yade where installed: speed and agreement
   cargo xtask docs              the crates' documentation, warnings being errors
 ";
 
@@ -32,6 +34,7 @@ fn main() -> ExitCode {
         "test" => test::test(),
         "tidy" => tidy::report(),
         "bench" => bench::bench(rest),
+        "peers" => peers::peers(rest),
         "docs" => test::docs(),
         "help" | "--help" | "-h" => {
             print!("{HELP}");

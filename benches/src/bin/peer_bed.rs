@@ -4,7 +4,9 @@
 //! floor at z = 0. A grain of type 2 belongs to a frozen rough base: it has a mass that nothing moves, and its weight is borne.
 
 use clap::{Parser, Subcommand, ValueEnum};
-use grouser_contact::{F32, F64, HertzMindlin, Interaction, Material, Mixed, PairTable, Precision, Real, Tail};
+use grouser_contact::{
+    F32, F64, HertzMindlin, Interaction, Material, Mixed, PairTable, Precision, Real, Tail,
+};
 use grouser_dem::*;
 use grouser_geometry::Vec3;
 use std::error::Error;

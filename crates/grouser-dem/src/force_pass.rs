@@ -11,10 +11,32 @@ use crate::quads;
 use crate::shared_grains::SharedGrains;
 use crate::slab::{Pair, Slab, SlabSums};
 use grouser_contact::{
-    BLOCK, Blocked, Body, Contact, ContactLaw, ContactLedger, F64, Frame, Lanes, PairTable, Precision, Real,
+    BLOCK, Blocked, Body, Contact, ContactLaw, ContactLedger, Frame, Lanes, PairTable, Precision, Real,
     RotationLaw, Vector,
 };
-use std::any::TypeId;
+
+/// Runs the expression with `$quads` naming the precision that `$precision` is, where there are registers for it;
+/// which one that is is known when compiled.
+#[cfg(target_arch = "x86_64")]
+macro_rules! in_quads {
+    ($precision:ty, $quads:ident => $body:expr) => {{
+        let is = std::any::TypeId::of::<$precision>();
+        if is == std::any::TypeId::of::<grouser_contact::F64>() {
+            type $quads = grouser_contact::F64;
+            Some($body)
+        } else if is == std::any::TypeId::of::<grouser_contact::Mixed>() {
+            type $quads = grouser_contact::Mixed;
+            Some($body)
+        } else if is == std::any::TypeId::of::<grouser_contact::F32>() {
+            type $quads = grouser_contact::F32;
+            Some($body)
+        } else {
+            None
+        }
+    }};
+}
+#[cfg(target_arch = "x86_64")]
+pub(crate) use in_quads;
 
 /// What a slab's pass needs beside the slab.
 pub(crate) struct PassInput<'a, P: Precision, L> {
@@ -142,19 +164,40 @@ fn dispatch_ledger<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool>(
     }
 }
 
-/// Places of touching pairs that wait for a full block.
+/// Places of touching pairs that wait for a full block; the lanes of their positions are filled already.
 pub(crate) struct Waiting {
-    places: [u32; 2 * BLOCK + 4],
+    places: [u32; BLOCK],
     n: usize,
 }
 
 impl Waiting {
-    /// Appends `from + n` for every bit n of a mask of four bits.
+    /// How many wait.
+    #[inline(always)]
+    pub fn n(&self) -> usize {
+        self.n & (BLOCK - 1)
+    }
+
+    /// Four more will fit.
+    #[inline(always)]
+    pub fn has_room(&self) -> bool {
+        self.n <= BLOCK - 4
+    }
+
+    /// Appends `place` if it touches.
+    #[inline(always)]
+    fn append_one(&mut self, touches: bool, place: u32) {
+        let n = self.n();
+        self.places[n] = place;
+        self.n += usize::from(touches);
+    }
+
+    /// Appends `from + n` for every bit n of a mask of four bits; there is room for four.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub fn append_four(&mut self, mask: usize, from: u32) {
         const ORDER: [[u8; 4]; 16] = places_of_bits();
         let four = ORDER[mask & 15].map(|place| from + u32::from(place));
-        let n = self.n & (2 * BLOCK - 1);
+        let n = self.n().min(BLOCK - 4);
         self.places[n..n + 4].copy_from_slice(&four);
         self.n += mask.count_ones() as usize;
     }
@@ -198,21 +241,18 @@ fn pass<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool, const LEDGE
     input: &PassInput<P, L>,
 ) -> SlabSums {
     let mut block = Block::<P::Real, L>::new(input.table);
-    let mut waiting = Waiting { places: [0; 2 * BLOCK + 4], n: 0 };
+    let mut waiting = Waiting { places: [0; BLOCK], n: 0 };
     for word in 0..slab.touched.len() {
         let from = word * 64;
-        let pairs = &slab.pairs[from..slab.pairs.len().min(from + 64)];
-        let (mut touching, mut n_done) = (0_u64, 0);
-        #[cfg(target_arch = "x86_64")]
-        if HAS_QUADS && is_double::<P>() {
-            // SAFETY: this pass is compiled for AVX2; the precision is double; lists hold numbers of grains.
-            touching = unsafe { quads::touching(pairs, from as u32, quad_places(input), &mut waiting) };
-            n_done = pairs.len() & !3;
-        }
-        for (bit, &pair) in pairs.iter().enumerate().skip(n_done) {
-            let touches = relative_place(pair, input).1 < P::Coordinate::ZERO;
-            touching |= u64::from(touches) << bit;
-            waiting.append_four(usize::from(touches), (from + bit) as u32);
+        let end = slab.pairs.len().min(from + 64);
+        let (mut touching, mut next) = (0_u64, 0);
+        while from + next < end {
+            if !waiting.has_room() {
+                block.work::<P, HAS_QUADS, LEDGER>(&waiting.places[..waiting.n], slab, input);
+                waiting.n = 0;
+            }
+            let pairs = &slab.pairs[from..end];
+            next = block.look::<P, HAS_QUADS>(pairs, next, from as u32, &mut touching, &mut waiting, input);
         }
         // Pairs that have just parted forget.
         let mut parted = slab.touched[word] & !touching;
@@ -221,30 +261,18 @@ fn pass<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool, const LEDGE
             parted &= parted - 1;
         }
         slab.touched[word] = touching;
-        if waiting.n >= BLOCK {
-            block.work::<P, HAS_QUADS, LEDGER>(&waiting.places[..BLOCK], slab, input);
-            waiting.places.copy_within(BLOCK..waiting.n, 0);
-            waiting.n -= BLOCK;
-        }
     }
     block.work::<P, HAS_QUADS, LEDGER>(&waiting.places[..waiting.n], slab, input);
     block.totals(input.time_step)
 }
 
-/// Both scalars of `P` are `f64`; known when compiled.
+/// There are registers for this precision; known when compiled.
 #[inline(always)]
-fn is_double<P: Precision>() -> bool {
-    TypeId::of::<P>() == TypeId::of::<F64>()
-}
-
-/// The arrays of a double-precision bed.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn quad_places<'a, P: Precision, L>(input: &'a PassInput<P, L>) -> quads::Places<'a> {
-    debug_assert!(is_double::<P>());
-    // SAFETY: `P::Coordinate` is `f64`.
-    let shifts = unsafe { &*(&raw const input.shifts).cast::<[[f64; 4]; 32]>() };
-    quads::Places { spheres: input.grains.spheres().cast(), shifts }
+fn has_quads<P: Precision>() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return in_quads!(P, Quads => size_of::<Quads>()).is_some();
+    #[cfg(not(target_arch = "x86_64"))]
+    false
 }
 
 impl<T: Real, L: ContactLaw<T>> Block<T, L> {
@@ -300,6 +328,67 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         self.scatter::<P, HAS_QUADS>(places, slab, input.grains);
     }
 
+    /// Looks at pairs from `next` on, four at a time, until all are seen or the block is full; touching ones fill the lanes
+    /// of positions. Gives the first pair that was not looked at.
+    #[inline(always)]
+    fn look<P: Precision<Real = T>, const HAS_QUADS: bool>(
+        &mut self,
+        pairs: &[Pair],
+        mut next: usize,
+        from: u32,
+        touching: &mut u64,
+        waiting: &mut Waiting,
+        input: &PassInput<P, L>,
+    ) -> usize {
+        #[cfg(target_arch = "x86_64")]
+        if HAS_QUADS {
+            let seen = in_quads!(P, Q => {
+                let places = quads::Places::<Q> {
+                    spheres: input.grains.spheres().cast(),
+                    shifts: input.shifts.as_ptr().cast(),
+                };
+                let [x, y, z] = &mut self.difference;
+                let [first, second] = &mut self.radius;
+                let lanes = quads::PlaceLanes {
+                    difference: [quads::start(x), quads::start(y), quads::start(z)],
+                    excess: quads::start(&mut self.excess),
+                    radius: [quads::start(first), quads::start(second)],
+                };
+                // SAFETY: this pass is compiled for AVX2; `Q` is `P`; lists hold numbers of grains.
+                unsafe { quads::look::<Q>(pairs, next, from, touching, waiting, &places, &lanes) }
+            });
+            next = seen.unwrap_or(next);
+        }
+        let is_rest = pairs.len() - next < 4;
+        while next < pairs.len() && waiting.has_room() && (is_rest || !HAS_QUADS || !has_quads::<P>()) {
+            let end = pairs.len().min(next + 4);
+            for (bit, &pair) in pairs.iter().enumerate().take(end).skip(next) {
+                let touches = self.look_at_one(pair, input, waiting.n());
+                *touching |= u64::from(touches) << bit;
+                waiting.append_one(touches, from + bit as u32);
+            }
+            next = end;
+        }
+        next
+    }
+
+    /// Fills the position lanes `k` with a pair and says whether it touches.
+    #[inline(always)]
+    fn look_at_one<P: Precision<Real = T>>(&mut self, pair: Pair, input: &PassInput<P, L>, k: usize) -> bool {
+        let [first, second] = pair.grains().map(|grain| input.grains.sphere(grain));
+        let narrow = |c: P::Coordinate| T::from_f64(c.to_f64());
+        let (difference, room) = relative_place(pair, input);
+        self.excess.0[k] = -narrow(room);
+        let difference = difference.to_array();
+        for axis in 0..3 {
+            self.difference[axis].0[k] = narrow(difference[axis]);
+        }
+        self.radius[0].0[k] = narrow(first.radius);
+        self.radius[1].0[k] = narrow(second.radius);
+        room < P::Coordinate::ZERO
+    }
+
+    /// Fills the other lanes with the pairs at `places`.
     #[inline(always)]
     fn gather<P: Precision<Real = T>, const HAS_QUADS: bool>(
         &mut self,
@@ -307,32 +396,37 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         slab: &Slab<T, L::Memory>,
         input: &PassInput<P, L>,
     ) {
+        let mut is_done = false;
+        #[cfg(target_arch = "x86_64")]
+        if HAS_QUADS {
+            let gathered = in_quads!(P, Q => {
+                let [[x, y, z], [x2, y2, z2]] = &mut self.spin;
+                let [vx, vy, vz] = &mut self.velocity;
+                let [first, second] = &mut self.mass;
+                let lanes = quads::MotionLanes {
+                    mass: [quads::start(first), quads::start(second)],
+                    velocity: [quads::start(vx), quads::start(vy), quads::start(vz)],
+                    spin: [
+                        [quads::start(x), quads::start(y), quads::start(z)],
+                        [quads::start(x2), quads::start(y2), quads::start(z2)],
+                    ],
+                };
+                // SAFETY: as in `look`; a block has room for all places, which are places of pairs.
+                unsafe { quads::gather::<Q>(&slab.pairs, places, input.grains.spheres().cast(), &lanes) };
+            });
+            is_done = gathered.is_some();
+        }
+        if !is_done {
+            for (k, &place) in places.iter().enumerate() {
+                self.gather_one(slab.pairs[place as usize], input, k);
+            }
+        }
         for (group, four) in places.chunks(4).enumerate() {
             let places: [u32; 4] = std::array::from_fn(|n| four[n.min(four.len() - 1)]);
-            let pairs = places.map(|place| slab.pairs[place as usize]);
-            #[cfg(target_arch = "x86_64")]
-            if HAS_QUADS && is_double::<P>() {
-                let lanes = quads::GatherLanes {
-                    difference: self.difference.each_mut().map(quads::start),
-                    excess: quads::start(&mut self.excess),
-                    radius: self.radius.each_mut().map(quads::start),
-                    mass: self.mass.each_mut().map(quads::start),
-                    velocity: self.velocity.each_mut().map(quads::start),
-                    spin: self.spin.each_mut().map(|spin| spin.each_mut().map(quads::start)),
-                };
-                // SAFETY: as in `pass`; a block has room for all places.
-                unsafe { quads::gather(pairs, quad_places(input), &lanes, 4 * group) };
-            } else {
-                pairs
-                    .into_iter()
-                    .enumerate()
-                    .for_each(|(n, pair)| self.gather_one(pair, input, 4 * group + n));
-            }
-            #[cfg(not(target_arch = "x86_64"))]
-            pairs.into_iter().enumerate().for_each(|(n, pair)| self.gather_one(pair, input, 4 * group + n));
             let memories = places.map(|place| slab.memory[place as usize]);
             L::Memory::store_four(memories, &mut self.memory, group * 4);
             if FrameOf::<T, L>::IS_TRACKED {
+                let pairs = places.map(|place| slab.pairs[place as usize]);
                 for body in 0..2 {
                     let turned = pairs.map(|pair| input.grains.quaternion(pair.grains()[body]));
                     let frames = turned.map(FrameOf::<T, L>::from_quaternion);
@@ -356,17 +450,11 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
     #[inline(always)]
     fn gather_one<P: Precision<Real = T>>(&mut self, pair: Pair, input: &PassInput<P, L>, k: usize) {
         let [first, second] = pair.grains().map(|grain| input.grains.sphere(grain));
-        let narrow = |c: P::Coordinate| T::from_f64(c.to_f64());
-        let (difference, room) = relative_place(pair, input);
-        self.excess.0[k] = -narrow(room);
-        let difference = difference.to_array();
         let velocity = (first.velocity - second.velocity).to_array();
         for axis in 0..3 {
-            self.difference[axis].0[k] = narrow(difference[axis]);
             self.velocity[axis].0[k] = velocity[axis];
         }
         for (body, sphere) in [first, second].into_iter().enumerate() {
-            self.radius[body].0[k] = narrow(sphere.radius);
             self.mass[body].0[k] = sphere.mass;
             let spin = sphere.spin.to_array();
             for axis in 0..3 {
@@ -486,19 +574,22 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             return;
         }
         #[cfg(target_arch = "x86_64")]
-        if HAS_QUADS && is_double::<P>() {
-            let forces =
-                [self.difference.each_mut(), self.velocity.each_mut()].map(|lanes| lanes.map(quads::start));
-            let arms = self.arm.each_mut().map(quads::start);
-            for (group, four) in places.chunks(4).enumerate() {
-                let pairs: [Pair; 4] =
-                    std::array::from_fn(|n| slab.pairs[four[n.min(four.len() - 1)] as usize]);
-                // SAFETY: as in `pass`; no other slab works on these grains now.
+        if HAS_QUADS {
+            let scattered = in_quads!(P, Q => {
+                let [fx, fy, fz] = &mut self.difference;
+                let [cx, cy, cz] = &mut self.velocity;
+                let [first, second] = &mut self.arm;
+                let forces = [quads::start(fx), quads::start(fy), quads::start(fz)];
+                let couples = [quads::start(cx), quads::start(cy), quads::start(cz)];
+                let arms = [quads::start(first), quads::start(second)];
+                // SAFETY: as in `gather`; no other slab works on these grains now.
                 unsafe {
-                    quads::scatter(&pairs[..four.len()], grains.loads().cast(), forces, arms, 4 * group)
-                };
+                    quads::scatter::<Q>(&slab.pairs, places, grains.loads().cast(), forces, couples, arms);
+                }
+            });
+            if scattered.is_some() {
+                return;
             }
-            return;
         }
         for (k, &place) in places.iter().enumerate() {
             let [i, j] = slab.pairs[place as usize].grains();

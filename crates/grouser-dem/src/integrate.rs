@@ -3,7 +3,12 @@
 //! Predict: x ← x + v Δt + ½ a Δt², v* = v + a Δt. Forces at (x, v*) give a′. Correct: v = v* + ½ (a′ − a) Δt.
 //! The usual half-step form evaluates dashpots with a velocity half a step old, which sticks at size ratios above three.
 
+use crate::force_pass::InstructionSet;
+#[cfg(target_arch = "x86_64")]
+use crate::force_pass::in_quads;
 use crate::grains::{Grains, Rotation};
+#[cfg(target_arch = "x86_64")]
+use crate::quads;
 use crate::shared_grains::SharedGrains;
 use grouser_contact::{Load, Precision, Real, Sphere, Vector};
 use grouser_geometry::Vec3;
@@ -58,7 +63,12 @@ impl<T: Real> Motion<T> {
     }
 
     /// The stages that follow the force pass, for a range of grains.
-    pub fn advance<P: Precision<Real = T>>(&self, grains: SharedGrains<P>, range: Range<u32>) -> Pace {
+    pub fn advance<P: Precision<Real = T>>(
+        &self,
+        grains: SharedGrains<P>,
+        range: Range<u32>,
+        set: InstructionSet,
+    ) -> Pace {
         if self.stages == Stages::None {
             return Pace::STILL;
         }
@@ -73,6 +83,24 @@ impl<T: Real> Motion<T> {
                 self.predict_turned(sphere, load, acceleration, orientation, &mut watch);
             }
             return watch.pace();
+        }
+        #[cfg(target_arch = "x86_64")]
+        if set != InstructionSet::Baseline && self.rotation == Rotation::Free {
+            let advanced = in_quads!(P, Q => {
+                // SAFETY: `Q` is `P`, so that these are the same types; `detect` found AVX2 on this machine.
+                unsafe {
+                    quads::advance::<Q>(
+                        &*(&raw const *self).cast(),
+                        &mut *(&raw mut *spheres as *mut [Sphere<Q>]),
+                        &mut *(&raw mut *loads as *mut [Load<<Q as Precision>::Real>]),
+                        &mut *(&raw mut *accelerations as *mut [[Vector<<Q as Precision>::Real>; 2]]),
+                        &mut *(&raw mut watch).cast(),
+                    );
+                }
+            });
+            if advanced.is_some() {
+                return watch.pace();
+            }
         }
         for ((sphere, load), acceleration) in spheres.iter_mut().zip(loads).zip(accelerations) {
             self.correct(sphere, load, acceleration);

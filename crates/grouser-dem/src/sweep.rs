@@ -29,7 +29,7 @@ pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
     motion: &Motion<P::Real>,
 ) -> Pace {
     let ranges: Vec<_> = slabs.iter().map(Slab::grains).collect();
-    let moves = |slab: usize| motion.advance(input.grains, ranges[slab % ranges.len()].clone());
+    let moves = |slab: usize| motion.advance(input.grains, ranges[slab % ranges.len()].clone(), input.set);
     let n_slabs = slabs.len();
     let n_grains: usize = ranges.iter().map(ExactSizeIterator::len).sum();
     let n_threads = rayon::current_num_threads().min((n_grains / GRAINS_PER_THREAD).max(1));

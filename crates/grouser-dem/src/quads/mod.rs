@@ -1,0 +1,229 @@
+//! The pass's data movement with 256-bit vectors: four records become four lanes of each component and back.
+//!
+//! The compiler vectorises the contact law by itself, but not the way between sorted records and lanes, which costs more
+//! than the law (`docs/performance.md`). Every function does the same operations in the same order as its plain counterpart
+//! in [`crate::force_pass`] and [`crate::integrate`], so that the bytes are the same. Loops over a block are inside, and no
+//! closure stands between a loop and its instructions: either would leave a call for every four contacts.
+
+mod advance;
+mod quad;
+
+pub(crate) use advance::advance;
+
+use crate::force_pass::Waiting;
+use crate::slab::Pair;
+use grouser_contact::{BLOCK, F32, F64, Lanes, Load, Mixed, Precision, Sphere};
+use quad::{NarrowsTo, Quad};
+use std::arch::x86_64::{__m128, __m256d};
+
+/// Precisions and the registers that hold four of their scalars.
+pub(crate) trait Quads: Precision {
+    type Wide: Quad<Scalar = Self::Coordinate> + NarrowsTo<Self::Narrow>;
+    type Narrow: Quad<Scalar = Self::Real>;
+}
+
+impl Quads for F64 {
+    type Wide = __m256d;
+    type Narrow = __m256d;
+}
+
+impl Quads for Mixed {
+    type Wide = __m256d;
+    type Narrow = __m128;
+}
+
+impl Quads for F32 {
+    type Wide = __m128;
+    type Narrow = __m128;
+}
+
+/// Sorted spheres and the shift of each periodic image (fourth number zero).
+pub(crate) struct Places<Q: Quads> {
+    pub spheres: *const Sphere<Q>,
+    pub shifts: *const [Q::Coordinate; 4],
+}
+
+/// Lanes that [`look`] fills.
+pub(crate) struct PlaceLanes<T> {
+    pub difference: [*mut T; 3],
+    pub excess: *mut T,
+    pub radius: [*mut T; 2],
+}
+
+/// Lanes that [`gather`] fills.
+pub(crate) struct MotionLanes<T> {
+    pub mass: [*mut T; 2],
+    pub velocity: [*mut T; 3],
+    pub spin: [[*mut T; 3]; 2],
+}
+
+/// Start of a lane array, whatever scalar the compiler believes it to hold; callers know that it is `U`.
+#[inline(always)]
+pub(crate) fn start<T, U>(lanes: &mut Lanes<T>) -> *mut U {
+    lanes.0.as_mut_ptr().cast()
+}
+
+/// Looks at the groups of four pairs from `next` on until the block is full; sets one bit in `touching` for each pair that
+/// touches, and appends it to `waiting` and to the lanes. Gives the first pair that was not looked at.
+///
+/// # Safety
+/// The machine has AVX2; pairs hold numbers of spheres that exist; lane arrays hold [`BLOCK`] numbers.
+#[target_feature(enable = "avx2")]
+pub(crate) unsafe fn look<Q: Quads>(
+    pairs: &[Pair],
+    mut next: usize,
+    from: u32,
+    touching: &mut u64,
+    waiting: &mut Waiting,
+    places: &Places<Q>,
+    lanes: &PlaceLanes<Q::Real>,
+) -> usize {
+    // SAFETY: by the caller's promise; images are below 32.
+    unsafe {
+        while next + 4 <= pairs.len() && waiting.has_room() {
+            let four = pairs.as_ptr().add(next);
+            let (first_a, second_a, row_a) = row(*four, places);
+            let (first_b, second_b, row_b) = row(*four.add(1), places);
+            let (first_c, second_c, row_c) = row(*four.add(2), places);
+            let (first_d, second_d, row_d) = row(*four.add(3), places);
+            let [x, y, z, _] = Q::Wide::transposed([row_a, row_b, row_c, row_d]);
+            let radius = Q::Wide::fourths([first_a, first_b, first_c, first_d]);
+            let other = Q::Wide::fourths([second_a, second_b, second_c, second_d]);
+            // (x² + y²) + (z² − reach²), negative where they touch.
+            let reach = radius.plus(other);
+            let across = x.times(x).plus(y.times(y));
+            let room = across.plus(z.times(z).minus(reach.times(reach)));
+            let mask = room.negative();
+            let n = waiting.n();
+            let put = [
+                (lanes.difference[0], x),
+                (lanes.difference[1], y),
+                (lanes.difference[2], z),
+                (lanes.excess, room.negated()),
+                (lanes.radius[0], radius),
+                (lanes.radius[1], other),
+            ];
+            for (lane, value) in put {
+                value.narrowed().packed(mask).store(lane.add(n));
+            }
+            waiting.append_four(mask, from + next as u32);
+            *touching |= (mask as u64) << next;
+            next += 4;
+        }
+    }
+    next
+}
+
+/// Positions of the two grains, and (x, y, z) from the second to the first.
+#[target_feature(enable = "avx2")]
+#[inline]
+unsafe fn row<Q: Quads>(
+    pair: Pair,
+    places: &Places<Q>,
+) -> (*const Q::Coordinate, *const Q::Coordinate, Q::Wide) {
+    // SAFETY: by the caller's promise.
+    unsafe {
+        let [first, second] = pair.grains();
+        let first: *const Q::Coordinate = places.spheres.add(first as usize).cast();
+        let second: *const Q::Coordinate = places.spheres.add(second as usize).cast();
+        let shift = Q::Wide::load(places.shifts.add(pair.image()).cast());
+        (first, second, Q::Wide::load(first).minus(Q::Wide::load(second)).minus(shift))
+    }
+}
+
+/// Fills lanes 0.. with the motion of the pairs at `at`.
+///
+/// # Safety
+/// As [`look`]; there are at most [`BLOCK`] pairs.
+#[target_feature(enable = "avx2")]
+pub(crate) unsafe fn gather<Q: Quads>(
+    pairs: &[Pair],
+    at: &[u32],
+    spheres: *const Sphere<Q>,
+    lanes: &MotionLanes<Q::Real>,
+) {
+    debug_assert!(at.len() <= BLOCK);
+    // SAFETY: by the caller's promise; velocity, mass, spin and material are eight numbers' room in a row.
+    unsafe {
+        let mut k = 0;
+        while k < at.len() {
+            let last = at.len() - 1;
+            let [first_a, second_a] = motions(pairs, at[k], spheres);
+            let [first_b, second_b] = motions(pairs, at[last.min(k + 1)], spheres);
+            let [first_c, second_c] = motions(pairs, at[last.min(k + 2)], spheres);
+            let [first_d, second_d] = motions(pairs, at[last.min(k + 3)], spheres);
+            let [[x, y, z, mass], spin] = Q::Narrow::columns_of_eight([first_a, first_b, first_c, first_d]);
+            let [[x2, y2, z2, mass2], spin2] =
+                Q::Narrow::columns_of_eight([second_a, second_b, second_c, second_d]);
+            x.minus(x2).store(lanes.velocity[0].add(k));
+            y.minus(y2).store(lanes.velocity[1].add(k));
+            z.minus(z2).store(lanes.velocity[2].add(k));
+            mass.store(lanes.mass[0].add(k));
+            mass2.store(lanes.mass[1].add(k));
+            for axis in 0..3 {
+                spin[axis].store(lanes.spin[0][axis].add(k));
+                spin2[axis].store(lanes.spin[1][axis].add(k));
+            }
+            k += 4;
+        }
+    }
+}
+
+/// Where the velocities of the two grains of a pair begin.
+#[target_feature(enable = "avx2")]
+#[inline]
+unsafe fn motions<Q: Quads>(pairs: &[Pair], place: u32, spheres: *const Sphere<Q>) -> [*const Q::Real; 2] {
+    // SAFETY: by the caller's promise.
+    unsafe {
+        let [first, second] = pairs.get_unchecked(place as usize).grains();
+        [
+            (&raw const (*spheres.add(first as usize)).velocity).cast(),
+            (&raw const (*spheres.add(second as usize)).velocity).cast(),
+        ]
+    }
+}
+
+/// Adds the lanes of forces and of n × F to the loads of the grains of the pairs at `at`.
+///
+/// # Safety
+/// As [`gather`]; no other thread works on these grains.
+#[target_feature(enable = "avx2")]
+pub(crate) unsafe fn scatter<Q: Quads>(
+    pairs: &[Pair],
+    at: &[u32],
+    loads: *mut Load<Q::Real>,
+    forces: [*mut Q::Real; 3],
+    couples: [*mut Q::Real; 3],
+    arms: [*mut Q::Real; 2],
+) {
+    // SAFETY: by the caller's promise; loads are two groups of four numbers.
+    unsafe {
+        let zero = Q::Real::default();
+        let one = <Q::Real as grouser_contact::Real>::ONE;
+        let padding = Q::Narrow::splat(zero);
+        let mut k = 0;
+        while k < at.len() {
+            let [x, y, z] = forces;
+            let force = Q::Narrow::transposed([
+                Q::Narrow::load(x.add(k)),
+                Q::Narrow::load(y.add(k)),
+                Q::Narrow::load(z.add(k)),
+                padding,
+            ]);
+            let [x, y, z] = couples;
+            let couple = Q::Narrow::transposed([
+                Q::Narrow::load(x.add(k)),
+                Q::Narrow::load(y.add(k)),
+                Q::Narrow::load(z.add(k)),
+                padding,
+            ]);
+            for n in 0..(at.len() - k).min(4) {
+                let [near, far] = pairs.get_unchecked(at[k + n] as usize).grains();
+                let (near, far) = (loads.add(near as usize).cast(), loads.add(far as usize).cast());
+                Q::Narrow::add_eight(near, force[n], one, couple[n], -*arms[0].add(k + n));
+                Q::Narrow::add_eight(far, force[n], -one, couple[n], -*arms[1].add(k + n));
+            }
+            k += 4;
+        }
+    }
+}
