@@ -1,7 +1,8 @@
 //! From the scenario's soil to a loose bed of grains, and to the key under which its settled form is kept.
 
-use super::{Law, Materials, SetupError};
+use super::{Law, LawBed, Materials, SetupError};
 use crate::scene::{Grains, Rotation, Scenario, Side, Sizes};
+use grouser_contact::Real;
 use grouser_dem::{Bed, BedSettings, Domain, Layer, Plane, RadiusDistribution, random_packing};
 use grouser_geometry::Vec3;
 use serde::Serialize;
@@ -29,7 +30,7 @@ pub fn layers(soil: &Grains, materials: &Materials) -> Vec<Layer> {
 ///
 /// # Errors
 /// When the packing or the bed is refused.
-pub fn loose_bed<L: Law>(scenario: &Scenario, soil: &Grains, law: L) -> Result<Bed<L>, SetupError> {
+pub fn loose_bed<L: Law>(scenario: &Scenario, soil: &Grains, law: L) -> Result<LawBed<L>, SetupError> {
     let materials = Materials::of(scenario);
     let wall = materials.number(&soil.container.material);
     let size = Vec3::from(soil.container.size_m);
@@ -47,9 +48,11 @@ pub fn loose_bed<L: Law>(scenario: &Scenario, soil: &Grains, law: L) -> Result<B
             planes.push(Plane { point: size, normal: -normal, material: wall });
         }
     }
-    let spheres = random_packing(&domain, &layers(soil, &materials), soil.seed)?;
+    let spheres = random_packing::<L::Precision>(&domain, &layers(soil, &materials), soil.seed)?;
     // The loose packing may stand higher than the box; nothing is lost at its open top.
-    domain.upper.z = spheres.iter().fold(size.z, |top, sphere| top.max(sphere.position.z + sphere.radius));
+    domain.upper.z = spheres
+        .iter()
+        .fold(size.z, |top, sphere| top.max(sphere.position.z.to_f64() + sphere.radius.to_f64()));
     let settings = BedSettings {
         domain,
         planes,

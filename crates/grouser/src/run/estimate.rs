@@ -102,8 +102,7 @@ impl WithLaw for MeasuredRate {
         // A cubic lattice that touches: six contacts a grain, as many as a bed at rest has.
         let spacing = 1.999 * radius;
         let place = |i: usize| Vec3::new((i % n) as f64, (i / n % n) as f64, (i / n / n) as f64) * spacing;
-        let spheres =
-            (0..n * n * n).map(|i| sphere::<grouser_contact::F64>(place(i), radius, 2600.0, 0)).collect();
+        let spheres = (0..n * n * n).map(|i| sphere::<L::Precision>(place(i), radius, 2600.0, 0)).collect();
         let material = grouser_contact::Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 2600.0 };
         let between = grouser_contact::Interaction { restitution: 0.5, friction: 0.5 };
         let table =

@@ -1,22 +1,22 @@
 //! Grains and surfaces as ParaView sees them.
 
-use super::Law;
+use super::{Law, LawBed};
 use crate::output::{PointField, PolyData};
-use grouser_dem::Bed;
+use grouser_contact::Real;
 use grouser_geometry::TriangleSurface;
 
 /// Centres of all grains with radius, velocity, spin and number.
-pub fn grains_frame<L: Law>(bed: &Bed<L>) -> PolyData<'static> {
+pub fn grains_frame<L: Law>(bed: &LawBed<L>) -> PolyData<'static> {
     let grains = bed.grains();
     let spheres = &grains.spheres;
     PolyData {
         time: 0.0,
-        points: spheres.iter().map(|sphere| sphere.position.to_array()).collect(),
+        points: spheres.iter().map(|sphere| sphere.position.cast().to_array()).collect(),
         triangles: Vec::new(),
         fields: vec![
-            ("radius", PointField::Scalar(spheres.iter().map(|sphere| sphere.radius).collect())),
-            ("velocity", PointField::Vector(spheres.iter().map(|s| s.velocity.to_array()).collect())),
-            ("spin", PointField::Vector(spheres.iter().map(|s| s.spin.to_array()).collect())),
+            ("radius", PointField::Scalar(spheres.iter().map(|sphere| sphere.radius.to_f64()).collect())),
+            ("velocity", PointField::Vector(spheres.iter().map(|s| s.velocity.cast().to_array()).collect())),
+            ("spin", PointField::Vector(spheres.iter().map(|s| s.spin.cast().to_array()).collect())),
             ("id", PointField::Id(grains.ids.iter().map(|&id| i64::from(id)).collect())),
         ],
     }

@@ -1,36 +1,41 @@
 //! Where the surface of a bed is.
 
-use grouser_contact::Sphere;
+use grouser_contact::{Precision, Real, Sphere};
 
 /// Mean height of the bed's surface [m]: the mean, over square cells two mean grain diameters wide, of the highest point of
 /// any grain whose centre lies in the cell.
-pub fn surface_level(spheres: &[Sphere], size: [f64; 2]) -> f64 {
-    let mean_radius = spheres.iter().map(|sphere| sphere.radius).sum::<f64>() / spheres.len() as f64;
+pub fn surface_level<P: Precision>(spheres: &[Sphere<P>], size: [f64; 2]) -> f64 {
+    let mean_radius = spheres.iter().map(|sphere| sphere.radius.to_f64()).sum::<f64>() / spheres.len() as f64;
     let counts = size.map(|length| ((length / (4.0 * mean_radius)) as usize).max(1));
     let mut tops = vec![f64::NEG_INFINITY; counts[0] * counts[1]];
     for sphere in spheres {
         let cell = |along: f64, axis: usize| {
             ((along / size[axis] * counts[axis] as f64).max(0.0) as usize).min(counts[axis] - 1)
         };
-        let top = &mut tops[cell(sphere.position.y, 1) * counts[0] + cell(sphere.position.x, 0)];
-        *top = top.max(sphere.position.z + sphere.radius);
+        let top =
+            &mut tops[cell(sphere.position.y.to_f64(), 1) * counts[0] + cell(sphere.position.x.to_f64(), 0)];
+        *top = top.max(top_of(sphere));
     }
     let filled: Vec<f64> = tops.into_iter().filter(|top| top.is_finite()).collect();
     filled.iter().sum::<f64>() / filled.len() as f64
 }
 
 /// Highest point of any grain that a disc of `radius` around (`x`, `y`) would meet on its way down [m].
-pub fn highest_below_disc(spheres: &[Sphere], [x, y]: [f64; 2], radius: f64) -> f64 {
-    let is_below = |sphere: &&Sphere| {
-        let (dx, dy) = (sphere.position.x - x, sphere.position.y - y);
-        dx.hypot(dy) < radius + sphere.radius
+pub fn highest_below_disc<P: Precision>(spheres: &[Sphere<P>], [x, y]: [f64; 2], radius: f64) -> f64 {
+    let is_below = |sphere: &&Sphere<P>| {
+        let (dx, dy) = (sphere.position.x.to_f64() - x, sphere.position.y.to_f64() - y);
+        dx.hypot(dy) < radius + sphere.radius.to_f64()
     };
-    spheres.iter().filter(is_below).fold(0.0, |top, sphere| top.max(sphere.position.z + sphere.radius))
+    spheres.iter().filter(is_below).fold(0.0, |top, sphere| top.max(top_of(sphere)))
+}
+
+fn top_of<P: Precision>(sphere: &Sphere<P>) -> f64 {
+    sphere.position.z.to_f64() + sphere.radius.to_f64()
 }
 
 /// Mass of the grains over the volume between floor and surface [kg/m³].
-pub fn bulk_density(spheres: &[Sphere], size: [f64; 2], level: f64) -> f64 {
-    spheres.iter().map(|sphere| sphere.mass).sum::<f64>() / (size[0] * size[1] * level)
+pub fn bulk_density<P: Precision>(spheres: &[Sphere<P>], size: [f64; 2], level: f64) -> f64 {
+    spheres.iter().map(|sphere| sphere.mass.to_f64()).sum::<f64>() / (size[0] * size[1] * level)
 }
 
 #[cfg(test)]

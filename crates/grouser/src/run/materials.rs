@@ -1,7 +1,7 @@
 //! Materials of a scenario as the contact laws want them: numbered, with the interaction of every pair.
 
 use crate::scene::{RestitutionTail, Scenario};
-use grouser_contact::{Interaction, Material, PairTable, ParameterError, Tail};
+use grouser_contact::{Interaction, Material, PairTable, ParameterError, Real, Tail};
 
 /// The materials of a scenario, numbered by name in alphabetical order.
 pub struct Materials<'a> {
@@ -47,7 +47,7 @@ impl<'a> Materials<'a> {
     ///
     /// # Errors
     /// When a constant is out of range, which a checked scenario excludes.
-    pub fn table(&self) -> Result<PairTable, ParameterError> {
+    pub fn table<T: Real>(&self) -> Result<PairTable<T>, ParameterError> {
         let elastic: Vec<Material> = self.names.iter().map(|name| self.elastic(name)).collect();
         PairTable::new(&elastic, self.tail(), |i, j| self.interaction(self.names[i], self.names[j]))
     }

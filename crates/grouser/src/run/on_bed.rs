@@ -2,11 +2,12 @@
 //! own copy.
 
 use super::experiment::{Advanced, Outcome, Status};
-use super::{Experiment, Law, Progress, RunError, SetupError, bed, cache, level, time_step};
+use super::{Experiment, Law, LawBed, Progress, RunError, SetupError, bed, cache, level, time_step};
 use crate::output::PolyData;
 use crate::output::summary::{self, Metric};
 use crate::scene::{Grains, Scenario};
-use grouser_dem::{Bed, Failure, SettleCriterion, Settled, Settling};
+use grouser_contact::Real;
+use grouser_dem::{Failure, SettleCriterion, Settled, Settling};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +26,7 @@ pub trait Pass<L: Law>: Serialize + DeserializeOwned + Sized {
     fn begin(
         scenario: &Scenario,
         number: usize,
-        bed: Bed<L>,
+        bed: LawBed<L>,
         time_step: f64,
         done: &[Self::Finished],
     ) -> Result<Self, SetupError>;
@@ -52,7 +53,7 @@ pub trait Pass<L: Law>: Serialize + DeserializeOwned + Sized {
     fn finish(self, scenario: &Scenario) -> Self::Finished;
 
     /// What has come of the passes so far, beyond what [`OnBed`] says about bed and time step.
-    fn outcome(scenario: &Scenario, bed: &Bed<L>, done: &[Self::Finished]) -> Outcome;
+    fn outcome(scenario: &Scenario, bed: &LawBed<L>, done: &[Self::Finished]) -> Outcome;
 }
 
 /// A bed and its passes, as a state.
@@ -67,8 +68,8 @@ pub struct OnBed<L: Law, P: Pass<L>> {
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "L: Law, P: Pass<L>")]
 enum Stage<L: Law, P: Pass<L>> {
-    Settling { bed: Box<Bed<L>>, settling: Settling },
-    Passing { settled: Settled, bed: Box<Bed<L>>, pass: Option<Box<P>> },
+    Settling { bed: Box<LawBed<L>>, settling: Settling },
+    Passing { settled: Settled, bed: Box<LawBed<L>>, pass: Option<Box<P>> },
 }
 
 impl<L: Law, P: Pass<L>> OnBed<L, P> {
@@ -243,11 +244,12 @@ impl<L: Law, P: Pass<L>> Experiment for OnBed<L, P> {
 }
 
 /// What the settled bed is like.
-fn bed_metrics<L: Law>(bed: &Bed<L>, settled: &Settled) -> Vec<Metric> {
+fn bed_metrics<L: Law>(bed: &LawBed<L>, settled: &Settled) -> Vec<Metric> {
     let spheres = &bed.grains().spheres;
     let size = [0, 1].map(|axis| bed.settings().domain.size()[axis]);
     let level = level::surface_level(spheres, size);
-    let solid: f64 = spheres.iter().map(|s| 4.0 / 3.0 * std::f64::consts::PI * s.radius.powi(3)).sum();
+    let solid: f64 =
+        spheres.iter().map(|s| 4.0 / 3.0 * std::f64::consts::PI * s.radius.to_f64().powi(3)).sum();
     vec![
         Metric::new("grains", spheres.len() as f64, "-"),
         Metric::new("bed depth", level, "m"),

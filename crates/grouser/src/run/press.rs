@@ -6,10 +6,10 @@ use super::on_bed::Pass;
 use super::press_outcome;
 use super::rigid_tool::RigidTool;
 use super::tool_ledger::ToolLedger;
-use super::{Law, Materials, Outcome, SetupError, level};
+use super::{Law, LawBed, Materials, Outcome, SetupError, level};
 use crate::output::{PolyData, Table};
 use crate::scene::{Motion, Scenario};
-use grouser_dem::{Bed, BedEnergy, Failure};
+use grouser_dem::{BedEnergy, Failure};
 use grouser_geometry::{Vec3, Wrench};
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +35,7 @@ const COLUMNS: [(&str, &str); 14] = [
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(bound = "L: Law")]
 pub struct Pressing<L: Law> {
-    bed: Bed<L>,
+    bed: LawBed<L>,
     tool: RigidTool<L>,
     label: String,
     name: String,
@@ -78,7 +78,7 @@ impl<L: Law> Pass<L> for Pressing<L> {
     fn begin(
         scenario: &Scenario,
         number: usize,
-        mut bed: Bed<L>,
+        mut bed: LawBed<L>,
         time_step: f64,
         _: &[Pressed],
     ) -> Result<Self, SetupError> {
@@ -158,7 +158,7 @@ impl<L: Law> Pass<L> for Pressing<L> {
         Pressed { label, name, diameter, table, ledger }
     }
 
-    fn outcome(scenario: &Scenario, _: &Bed<L>, done: &[Pressed]) -> Outcome {
+    fn outcome(scenario: &Scenario, _: &LawBed<L>, done: &[Pressed]) -> Outcome {
         press_outcome::outcome(scenario, done)
     }
 }

@@ -1,5 +1,6 @@
 //! A rigid tool in contact with grains.
 
+use super::law::RealOf;
 use super::{Law, SetupError};
 use grouser_contact::{ContactLedger, PairTable};
 use grouser_coupling::{Step, SurfaceContacts};
@@ -44,9 +45,9 @@ impl<L: Law> RigidTool<L> {
     /// When a grain is pressed further than the contact law means.
     pub fn step(
         &mut self,
-        grains: &mut Grains<grouser_contact::F64>,
+        grains: &mut Grains<L::Precision>,
         law: &L,
-        table: &PairTable,
+        table: &PairTable<RealOf<L>>,
         time_step: f64,
     ) -> Result<Wrench, Failure> {
         self.body.predict(time_step);

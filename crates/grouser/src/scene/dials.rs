@@ -12,6 +12,8 @@ pub struct Dials {
     pub restitution_tail: RestitutionTail,
     /// How grains rotate.
     pub rotation: Rotation,
+    /// Scalars that grains are computed with.
+    pub precision: Precision,
 }
 
 impl Default for Dials {
@@ -20,6 +22,7 @@ impl Default for Dials {
             time_step_fraction: 0.2,
             restitution_tail: RestitutionTail::default(),
             rotation: Rotation::default(),
+            precision: Precision::default(),
         }
     }
 }
@@ -42,4 +45,16 @@ pub enum Rotation {
     Free,
     /// Not at all: an upper bound of strength.
     Fixed,
+}
+
+/// Scalars that grains are computed with.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Precision {
+    /// Double precision throughout.
+    #[default]
+    F64,
+    /// Positions and their differences in double precision, contacts and motion in single precision.
+    Mixed,
+    /// Single precision throughout: overlaps are differences of rounded positions.
+    F32,
 }

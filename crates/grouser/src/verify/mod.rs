@@ -2,6 +2,7 @@
 
 mod bodies;
 mod chung_ooi;
+mod precision;
 mod solids;
 mod two_bodies;
 mod vehicles;
@@ -111,4 +112,6 @@ const GRAINS: &[(&str, Rows)] = &[
     ("rolling on an incline", two_bodies::incline),
     ("free fall with bounces", two_bodies::bounces),
     ("a stack at rest", two_bodies::stack),
+    ("mixed precision", precision::mixed),
+    ("single precision", precision::single),
 ];
