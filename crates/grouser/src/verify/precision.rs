@@ -83,7 +83,7 @@ fn stack<P: Precision>(name: &str, tolerance: f64) -> Vec<Row> {
     let weight = grains[0].mass.to_f64() * gravity;
     let settings = BedSettings { gravity: Vec3::new(0.0, 0.0, -gravity), ..wall(0) };
     let mut bed = Bed::<Law, P>::new(grains, settings, table::<P>(0.3), Law::default()).expect("sound");
-    bed.run(25_000, 2e-5, |_| Ok::<(), Failure>(())).expect("well behaved");
+    bed.run(60_000, 2e-5, |_| Ok::<(), Failure>(())).expect("well behaved");
     let modulus = bed.pair_table().pair(0, 0).normal_modulus.to_f64();
     let overlap = |load: f64, radius: f64| (load / (modulus * radius.sqrt())).powf(2.0 / 3.0);
     let sum: f64 = (1..n).map(|above| overlap(above as f64 * weight, RADIUS / 2.0)).sum();
