@@ -57,7 +57,7 @@ pub fn peers(arguments: &[String]) -> bool {
             return false;
         }
         for round in 1..=ROUNDS {
-            for code in &is_there {
+            for code in is_there.iter().filter(|code| round <= code.n_rounds()) {
                 match code.run(case) {
                     Err(message) => {
                         eprintln!("error: {}: {message}", code.name);

@@ -3,8 +3,11 @@
 use super::code::Outcome;
 use super::{Case, Row};
 
+/// Name, unit, and how an outcome says it.
+type Quantity = (&'static str, &'static str, fn(&Outcome) -> f64);
+
 /// The quantities that are compared.
-const QUANTITIES: [(&str, &str, fn(&Outcome) -> f64); 4] = [
+const QUANTITIES: [Quantity; 4] = [
     ("kinetic energy", "J", |outcome| outcome.kinetic),
     ("coordination", "-", |outcome| outcome.coordination),
     ("mean overlap", "m", |outcome| outcome.overlap),
