@@ -4,7 +4,7 @@ use crate::force_pass::{InstructionSet, PassInput};
 use crate::integrate::{Motion, Pace, Stages, Turning};
 use crate::neighbours::Neighbours;
 use crate::shared_grains::SharedGrains;
-use crate::sweep::sweep;
+use crate::sweep::{is_shared, sweep};
 use crate::{BedEnergy, BedError, Domain, Failure, Grains, Plane, Rotation};
 use grouser_contact::{
     ContactLaw, ContactLedger, F64, Frame, PairTable, Precision, Real, RotationLaw, Sphere,
@@ -94,15 +94,30 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     ///
     /// # Errors
     /// When the motion has become meaningless, or with the error of `tool_forces`.
-    pub fn run<E: From<Failure>>(
+    pub fn run<E: From<Failure> + Send>(
+        &mut self,
+        n_steps: u64,
+        time_step: f64,
+        tool_forces: impl FnMut(&mut Grains<P>) -> Result<(), E> + Send,
+    ) -> Result<(), E> {
+        if n_steps == 0 {
+            return Ok(());
+        }
+        if is_shared(self.grains.len()) {
+            // One of the pool's own threads goes through all steps: entering the pool from outside, which puts this thread
+            // to sleep and wakes another, would cost tens of microseconds each step.
+            rayon::scope(|_| self.run_here(n_steps, time_step, tool_forces))
+        } else {
+            self.run_here(n_steps, time_step, tool_forces)
+        }
+    }
+
+    fn run_here<E: From<Failure>>(
         &mut self,
         n_steps: u64,
         time_step: f64,
         mut tool_forces: impl FnMut(&mut Grains<P>) -> Result<(), E>,
     ) -> Result<(), E> {
-        if n_steps == 0 {
-            return Ok(());
-        }
         self.predict(time_step)?;
         for step in 1..=n_steps {
             tool_forces(&mut self.grains)?;

@@ -20,6 +20,16 @@ use rayon::prelude::*;
 /// Grains below which another thread costs more in waking than it saves.
 const GRAINS_PER_THREAD: usize = 1_000;
 
+/// Threads that work on a bed of so many grains.
+fn threads_of(n_grains: usize) -> usize {
+    rayon::current_num_threads().min((n_grains / GRAINS_PER_THREAD).max(1))
+}
+
+/// Several threads work on a bed of so many grains.
+pub(crate) fn is_shared(n_grains: usize) -> bool {
+    threads_of(n_grains) > 1
+}
+
 /// Forces of all slabs, and `motion` of every grain afterwards.
 pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
     slabs: &mut [Slab<P::Real, L::Memory>],
@@ -32,7 +42,7 @@ pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
     let moves = |slab: usize| motion.advance(input.grains, ranges[slab % ranges.len()].clone(), input.set);
     let n_slabs = slabs.len();
     let n_grains: usize = ranges.iter().map(ExactSizeIterator::len).sum();
-    let n_threads = rayon::current_num_threads().min((n_grains / GRAINS_PER_THREAD).max(1));
+    let n_threads = threads_of(n_grains);
     let run_length = run_length(n_slabs, n_threads);
     let is_last = |slab: usize| slab + 1 == n_slabs && !is_ring;
 
