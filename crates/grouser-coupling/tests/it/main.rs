@@ -1,6 +1,7 @@
 //! Spheres on triangle surfaces against planes, closed forms and the surfaces' own facets.
 
 mod deforming_surfaces;
+mod elastic_block;
 mod moving_surfaces;
 
 use grouser_contact::*;
