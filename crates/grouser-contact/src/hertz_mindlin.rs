@@ -56,14 +56,24 @@ impl<T: Real, const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> ContactLaw<
         // While the load grows the *force* is kept, so the stretch shrinks by √(δ₀/δ), δ₀ being the overlap a step ago;
         // while it falls the stretch is kept and the force falls with the contact radius. The root is taken as
         // 2 δ₀/(δ₀ + δ): equal to first order in the step, and never larger, so that no step size yields energy.
-        let overlap_before = (overlap + normal_velocity * time_step).max(T::ZERO).min(overlap);
-        let both_overlaps = overlap_before + overlap;
-        // One division serves 1/(δ₀ + δ) and 1/k_t.
+        // A contact that began within the step (δ₀ < 0) slid for the share δ/(δ − δ₀) of it.
+        let overlap_a_step_ago = (overlap + normal_velocity * time_step).min(overlap);
+        let is_new = overlap_a_step_ago < T::ZERO;
+        let half = T::from_f64(0.5);
+        let (both_overlaps, share_above) = if is_new {
+            (overlap - overlap_a_step_ago, overlap)
+        } else {
+            (overlap_a_step_ago + overlap, overlap_a_step_ago + overlap_a_step_ago)
+        };
+        // One division serves the share and 1/k_t.
         let inverse = T::ONE / (both_overlaps * tangential_stiffness);
         let softness = both_overlaps * inverse;
-        let kept_share = (overlap_before + overlap_before) * (tangential_stiffness * inverse);
+        let share = share_above * (tangential_stiffness * inverse);
+        let (kept_share, slid_share) = if is_new { (T::ZERO, share) } else { (share, half) };
         let kept = if TOTAL_DISPLACEMENT { turned } else { turned * kept_share };
-        let stretched = kept + tangential_velocity * time_step;
+        // The memory runs half a step ahead: half of each step's sliding is added with the velocity at its beginning,
+        // half with that at its end.
+        let stretched = kept + tangential_velocity * (time_step * slid_share);
         let tangential = mindlin(
             stretched,
             tangential_velocity,
@@ -73,7 +83,7 @@ impl<T: Real, const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> ContactLaw<
             limit,
         );
 
-        let half = T::from_f64(0.5);
+        let ahead = tangential.spring + tangential_velocity * (half * time_step);
         let spent = -tangential.force.dot(tangential_velocity);
         let energy = ContactEnergy {
             normal_elastic: hertz_energy(stiffness, overlap),
@@ -82,6 +92,6 @@ impl<T: Real, const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> ContactLaw<
             tangential: spent,
             sliding: if tangential.is_sliding { spent } else { T::ZERO },
         };
-        (Response { normal_force, tangential_force: tangential.force, energy }, tangential.spring)
+        (Response { normal_force, tangential_force: tangential.force, energy }, ahead)
     }
 }

@@ -22,7 +22,7 @@ pub fn wall(material: u32) -> BedSettings {
 
 /// Share of the collision time that a step takes in these cases: 1000 steps an impact, so that the differences which remain
 /// are the law's and not the step's. The default of scenes is forty times coarser ([`crate::run::COLLISION_FRACTION`]).
-const IMPACT_FRACTION: f64 = 0.001;
+pub const IMPACT_FRACTION: f64 = 0.001;
 
 /// A step that resolves this impact [s].
 pub fn impact_step(
@@ -32,8 +32,20 @@ pub fn impact_step(
     (effective_radius, effective_mass): (f64, f64),
     speed: f64,
 ) -> f64 {
+    step_of(IMPACT_FRACTION, material, radius, pair, (effective_radius, effective_mass), speed)
+}
+
+/// A step of a share of the collision time, or of Rayleigh's time where that is less [s].
+pub fn step_of(
+    fraction: f64,
+    material: &Material,
+    radius: f64,
+    pair: &PairProperties,
+    (effective_radius, effective_mass): (f64, f64),
+    speed: f64,
+) -> f64 {
     let rayleigh = Criterion::rayleigh(material, radius, 0.2, "");
-    let hertz = Criterion::hertz(pair, effective_radius, effective_mass, speed, IMPACT_FRACTION, "");
+    let hertz = Criterion::hertz(pair, effective_radius, effective_mass, speed, fraction, "");
     TimeStep::smallest(vec![rayleigh, hertz]).map_or(0.0, |step| step.step_s)
 }
 

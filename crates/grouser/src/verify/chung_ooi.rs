@@ -2,7 +2,8 @@
 //! impact level", Granular Matter 13 (2011) 643–656.
 
 use super::Row;
-use super::bodies::{Impact, impact_step, space, step_until_parted, wall};
+use super::bodies::{IMPACT_FRACTION, Impact, impact_step, space, step_of, step_until_parted, wall};
+use crate::run::COLLISION_FRACTION;
 use grouser_contact::{ContactLaw, F64, HertzMindlin, Interaction, Material, PairTable, Sphere, Vector};
 use grouser_dem::{Bed, sphere};
 use grouser_geometry::Vec3;
@@ -139,11 +140,17 @@ const REBOUND_ANGLE: [(f64, f64); 8] = [
 
 /// Tangential restitution, spin and rebound angle of the contact point after an oblique impact.
 fn oblique<L: ContactLaw<f64> + Default>(angle_deg: f64) -> [f64; 3] {
+    oblique_in_steps::<L>(angle_deg, IMPACT_FRACTION)
+}
+
+/// The same with steps of a share of the collision time.
+fn oblique_in_steps<L: ContactLaw<f64> + Default>(angle_deg: f64, fraction: f64) -> [f64; 3] {
     let (radius, speed) = (0.0025, 3.9);
     let (sin, cos) = angle_deg.to_radians().sin_cos();
     let body = at_wall(ALUMINIUM_OXIDE, radius, Vector::new(speed * sin, 0.0, -speed * cos));
     let table = table(ALUMINIUM_OXIDE, 0.98, 0.092);
-    let dt = impact_step(&ALUMINIUM_OXIDE, radius, table.pair(0, 1), (radius, body.mass), speed);
+    let pair = table.pair(0, 1);
+    let dt = step_of(fraction, &ALUMINIUM_OXIDE, radius, pair, (radius, body.mass), speed);
     let bed = Bed::new(vec![body], wall(1), table, L::default()).expect("sound");
     let after = step_until_parted(bed, dt).bodies[0];
     // About +y the body turns forwards; the published sign is that of clockwise spin against the motion.
@@ -210,6 +217,17 @@ pub fn test_4() -> Vec<Row> {
         }
     }
     rows
+}
+
+/// Oblique impacts in the steps that scenes take by default.
+pub fn default_step() -> Vec<Row> {
+    let case = ("oblique impacts in default steps", "the same impact in steps forty times shorter");
+    let row = |angle: f64| {
+        let [[found, ..], [fine, ..]] = [COLLISION_FRACTION, IMPACT_FRACTION]
+            .map(|fraction| oblique_in_steps::<Published>(angle, fraction));
+        Row::absolute(case, format!("tangential restitution at {angle}°"), "-", found, (fine, 0.01))
+    };
+    [10.0, 20.0, 30.0, 45.0, 70.0].map(row).to_vec()
 }
 
 /// Two aluminium spheres with equal and opposite spins: nothing but the normal motion may change.

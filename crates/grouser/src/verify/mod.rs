@@ -107,6 +107,7 @@ const GRAINS: &[(&str, Rows)] = &[
     ("chung-ooi-2 elastic sphere on a wall", chung_ooi::test_2),
     ("chung-ooi-3 restitution", chung_ooi::test_3),
     ("chung-ooi-4 oblique impacts", chung_ooi::test_4),
+    ("oblique impacts in default steps", chung_ooi::default_step),
     ("chung-ooi-7 spinning spheres", chung_ooi::test_7),
     ("slip-to-roll", two_bodies::slip_to_roll),
     ("rolling on an incline", two_bodies::incline),
