@@ -24,6 +24,11 @@ pub(crate) trait Carrier {
     fn velocity(&self, touch: &Touch, point: &Vec3) -> Vec3;
     /// Spin of the surface at a touch; only its part along the world's `normal` is used [rad/s].
     fn spin(&self, touch: &Touch, normal: &Vec3) -> Vec3;
+    /// Inverse of the mass that moves at a touch [1/kg]; zero where the motion is prescribed.
+    #[inline]
+    fn inverse_mass(&self, _: &Touch) -> f64 {
+        0.0
+    }
     /// Takes a force on the surface, in the world's frame [N].
     fn receive(&mut self, touch: &Touch, point: &Vec3, force: Vec3);
 }
@@ -134,8 +139,14 @@ impl<M> Contacts<M> {
                 let spin = carrier.spin(touch, &normal);
                 let bodies =
                     bodies::<P, L>(sphere, overlap, orientations.map(|kept| &kept[near.index as usize]));
-                let contact =
+                let mut contact =
                     contact(sphere, step.law, &bodies, &normal, overlap, [&velocity, &spin], step.time_step);
+                let inverse_mass = carrier.inverse_mass(touch);
+                if inverse_mass > 0.0 {
+                    // 1/m* = 1/m of the grain + that of the surface.
+                    contact.effective_mass =
+                        P::Real::from_f64(1.0 / (1.0 / sphere.mass.to_f64() + inverse_mass));
+                }
                 let pair = step.table.pair(sphere.material, material);
                 let (response, mut memory) = step.law.respond(&contact, pair, memory);
                 let arm = P::Real::from_f64(-touch.distance);

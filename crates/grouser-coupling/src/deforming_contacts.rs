@@ -23,6 +23,8 @@ pub struct DeformingContacts<M> {
     velocity: Vec<Vec3>,
     /// Force on each vertex in the last step [N].
     force: Vec<Vec3>,
+    /// Inverse of the mass that moves with each vertex [1/kg].
+    inverse_mass: Vec<f64>,
     /// What any vertex has moved since the forces were asked for [m].
     moved: f64,
     material: u32,
@@ -36,6 +38,7 @@ struct Deforming<'a> {
     surface: &'a TriangleSurface,
     velocity: &'a [Vec3],
     force: &'a mut [Vec3],
+    inverse_mass: &'a [f64],
 }
 
 impl Deforming<'_> {
@@ -72,6 +75,12 @@ impl Carrier for Deforming<'_> {
             .sum();
         normal * (circulation / (4.0 * area))
     }
+    /// Σ_k L_k² / m_k.
+    fn inverse_mass(&self, touch: &Touch) -> f64 {
+        let weights = natural_coordinates(&touch.point, &self.surface.corners(touch.triangle as usize));
+        let vertices = self.vertices(touch);
+        (0..3).map(|k| weights[k] * weights[k] * self.inverse_mass[vertices[k]]).sum()
+    }
     /// Shares the force out by natural coordinates (P0 Eq. 42).
     fn receive(&mut self, touch: &Touch, point: &Vec3, force: Vec3) {
         let weights = natural_coordinates(point, &self.surface.corners(touch.triangle as usize));
@@ -89,6 +98,7 @@ impl<M> DeformingContacts<M> {
         Self {
             velocity: vec![Vec3::zeros(); vertices.len()],
             force: vec![Vec3::zeros(); vertices.len()],
+            inverse_mass: vec![0.0; vertices.len()],
             surface: TriangleSurface { vertices, triangles: mirror.triangles().to_vec() },
             mirror,
             moved: 0.0,
@@ -97,6 +107,16 @@ impl<M> DeformingContacts<M> {
             candidates: Candidates::default(),
             contacts: Contacts::default(),
         }
+    }
+
+    /// The same contacts with a surface as heavy as its nodes, `mass(node)` [kg], infinite where held: m* of a contact is then
+    /// the reduced mass of grain and surface, and dashpots do not overpower light nodes. Without it the surface counts as
+    /// one of prescribed motion.
+    pub fn with_nodal_masses(mut self, mass: impl Fn(u32) -> f64) -> Self {
+        for (vertex, inverse) in self.inverse_mass.iter_mut().enumerate() {
+            *inverse = self.mirror.inverse_mass(vertex, &mass);
+        }
+        self
     }
 
     /// Brings the surface to where the nodes are now [m], moving as they do [m/s].
@@ -114,8 +134,8 @@ impl<M> DeformingContacts<M> {
 
     /// Forces of one step: adds to the `loads` of the grains; the opposite forces wait for [`Self::spread`].
     ///
-    /// `ids` are the permanent numbers of the grains; results do not depend on the order in which grains are stored. R* and m* are
-    /// those of the grain, and the contact point lies on the surface.
+    /// `ids` are the permanent numbers of the grains; results do not depend on the order in which grains are stored. R* is that
+    /// of the grain, m* too unless [`Self::with_nodal_masses`] was called, and the contact point lies on the surface.
     pub fn forces<P: Precision, L: ContactLaw<P::Real, Memory = M>>(
         &mut self,
         (spheres, ids): (&[Sphere<P>], &[u32]),
@@ -147,8 +167,12 @@ impl<M> DeformingContacts<M> {
         self.candidates.refresh(&self.surface, |place| *place, (spheres, ids), travel, self.margin);
         // 2. to 6.
         self.force.fill(Vec3::zeros());
-        let mut carrier =
-            Deforming { surface: &self.surface, velocity: &self.velocity, force: &mut self.force };
+        let mut carrier = Deforming {
+            surface: &self.surface,
+            velocity: &self.velocity,
+            force: &mut self.force,
+            inverse_mass: &self.inverse_mass,
+        };
         let surface = (&self.surface, self.material);
         self.contacts.pass(
             &self.candidates,

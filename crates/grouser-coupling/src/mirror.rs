@@ -142,6 +142,11 @@ impl Mirror {
         }
     }
 
+    /// Inverse of the mass that a force on vertex `vertex` moves [1/kg]: Σ N_i² / m_i.
+    pub fn inverse_mass(&self, vertex: usize, mass_of_node: impl Fn(u32) -> f64) -> f64 {
+        self.entries_of(vertex).iter().map(|&(node, weight)| weight * weight / mass_of_node(node)).sum()
+    }
+
     /// Shares the forces of the vertices out: calls `add(node, force)`, in the order of the vertices.
     pub fn spread(&self, of_vertices: &[Vec3], mut add: impl FnMut(u32, Vec3)) {
         for (vertex, force) in of_vertices.iter().enumerate().filter(|(_, force)| **force != Vec3::zeros()) {

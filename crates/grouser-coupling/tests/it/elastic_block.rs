@@ -41,7 +41,8 @@ impl Impact {
         bead.velocity = Vector::new(0.7, -0.3, -1.0);
         bead.spin = Vector::new(5.0, -8.0, 3.0);
         Self {
-            contacts: DeformingContacts::new(mirror, |n| solid.position(n), 0, Margin::DEFAULT),
+            contacts: DeformingContacts::new(mirror, |n| solid.position(n), 0, Margin::DEFAULT)
+                .with_nodal_masses(|n| solid.nodal_mass()[n as usize]),
             solid,
             bead,
             load: Load::default(),
