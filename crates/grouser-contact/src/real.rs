@@ -36,7 +36,7 @@ pub trait Real:
     fn to_f64(self) -> f64;
     /// Square root.
     fn sqrt(self) -> Self;
-    /// Nearest integer, halves to even.
+    /// Nearest integer, halves to even, of a number below 2²².
     fn round_ties_even(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
@@ -55,7 +55,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($($scalar:ty),*) => {$(
+    ($($scalar:ty: $rounder:literal),*) => {$(
         impl Real for $scalar {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -73,7 +73,8 @@ macro_rules! real {
             }
             #[inline(always)]
             fn round_ties_even(self) -> Self {
-                self.round_ties_even()
+                // At 1.5 × 2^(bits − 1) neighbouring numbers are one apart: the sum is rounded, without a call.
+                (self + $rounder) - $rounder
             }
             #[inline(always)]
             fn is_finite(self) -> bool {
@@ -82,4 +83,18 @@ macro_rules! real {
         }
     )*};
 }
-real!(f64, f32);
+real!(f64: 6_755_399_441_055_744.0, f32: 12_582_912.0);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_is_that_of_the_standard_library() {
+        for value in [-2.5_f64, -1.5, -0.5000001, -0.5, -0.0, 0.0, 0.3, 0.5, 0.50001, 1.5, 2.5, 1e6 + 0.5] {
+            assert_eq!(Real::round_ties_even(value), value.round_ties_even(), "{value}");
+            let value = value as f32;
+            assert_eq!(Real::round_ties_even(value), value.round_ties_even(), "{value}");
+        }
+    }
+}

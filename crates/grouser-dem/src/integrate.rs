@@ -188,7 +188,7 @@ impl<T: Real> Motion<T> {
 }
 
 /// Keeps an eye on the fastest grain; 0 × x is NaN for every x that is not finite.
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Watch<T> {
     fastest_squared: T,
     checksum: T,

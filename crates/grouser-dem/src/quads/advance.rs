@@ -18,6 +18,8 @@ pub(crate) unsafe fn advance<Q: Quads>(
     watch: &mut Watch<Q::Real>,
 ) {
     assert!(spheres.len() == loads.len() && spheres.len() == accelerations.len());
+    // Here and not behind a pointer, where every grain would wait for the last one's to be stored.
+    let mut seen = *watch;
     // SAFETY: the three slices have one length; records are groups of four numbers, accelerations six in a row.
     unsafe {
         let scalar = Q::Real::from_f64;
@@ -56,7 +58,8 @@ pub(crate) unsafe fn advance<Q: Quads>(
             next.store(velocity);
             spinning.store(spin);
             let [speed_squared, spin_squared] = Q::Narrow::squares(next, spinning);
-            watch.see(speed_squared, spin_squared);
+            seen.see(speed_squared, spin_squared);
         }
     }
+    *watch = seen;
 }
