@@ -40,7 +40,8 @@ begun = time.time()
 O.run(steps, True)
 print("Loop time of %g on 1 procs" % (time.time() - begun))
 with open(end, "w") as out:
-    for body, row in zip(O.bodies[1:], rows):
-        place, speed, spin = body.state.pos, body.state.vel, body.state.angVel
+    for index, row in enumerate(rows):
+        body = O.bodies[index + 1].state
+        place, speed, spin = body.pos, body.vel, body.angVel
         out.write("%d %.12g %.12g %.12g %.12g %g %g %g %g %g %g\n"
                   % (row[0], row[1], place[0], place[1], place[2] - lift, *speed, *spin))
