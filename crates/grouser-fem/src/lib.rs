@@ -72,4 +72,4 @@ pub use mass::MassKind;
 pub use material::{Elasticity, Formulation, Material, MaterialError};
 pub use solid::{Settings, Solid, SolidError, State, Support, VolumetricTreatment};
 pub use stable_step::StableStep;
-pub use statics::{LinearSolver, StaticError, StaticOptions};
+pub use statics::{LinearSolver, StaticError, StaticOptions, StaticSummary};

@@ -270,6 +270,17 @@ impl Solid {
         support.velocity[component] = velocity;
     }
 
+    /// Lets go of one component of a node; nothing happens where it is not held.
+    pub fn release(&mut self, node: u32, component: usize) {
+        if let Some(support) = self.state.supports.get_mut(&node) {
+            self.is_started = false;
+            support.held[component] = false;
+            if support.held == [false; 3] {
+                self.state.supports.remove(&node);
+            }
+        }
+    }
+
     /// Puts a pressure [Pa] on a named surface, against its outward normal.
     ///
     /// # Errors

@@ -11,8 +11,8 @@ use crate::tetrahedron_shape::{
 };
 use crate::{TriangleSurface, Vec3};
 
-/// Smallest shape figure of an element that a solid accepts: dihedral angles down to about 0.1°, aspect ratios up to about 700.
-const SMALLEST_SHAPE: f64 = 0.01;
+/// Smallest shape figure of an element that a solid accepts: needles up to about 350 times as long as wide.
+const SMALLEST_SHAPE: f64 = 1e-3;
 
 /// Number of nodes of every element of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

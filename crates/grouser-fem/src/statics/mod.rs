@@ -23,11 +23,32 @@ use crate::solid::Solid;
 /// Solver of the linear systems.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LinearSolver {
-    /// Conjugate gradients with incomplete Cholesky: little memory, best for compact solids.
-    ConjugateGradients,
-    /// Sparse Cholesky with nested dissection: exact, best for thin solids such as tires.
+    /// Sparse Cholesky up to [`DIRECT_UNKNOWNS`] unknowns and for thin solids, which have more than half of their nodes on the
+    /// boundary; otherwise conjugate gradients, and sparse Cholesky where they fail ([`StaticSummary::has_fallen_back`]).
     #[default]
+    Automatic,
+    /// Conjugate gradients with incomplete Cholesky: little memory, two to three times faster for large compact solids.
+    ConjugateGradients,
+    /// Sparse Cholesky with nested dissection: exact, about twice as fast for large thin solids such as tires.
     SparseCholesky,
+}
+
+/// Unknowns up to which [`LinearSolver::Automatic`] factorises: both solvers then take about the same time
+/// (`docs/performance.md`), and the direct one needs no tolerance.
+pub const DIRECT_UNKNOWNS: usize = 10_000;
+
+/// Iterations after which conjugate gradients have failed: sound matrices of 4e5 unknowns need some hundred.
+const MOST_ITERATIONS: usize = 5_000;
+
+/// How a static equilibrium was reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StaticSummary {
+    /// Linear systems solved.
+    pub linear_solutions: usize,
+    /// Iterations of conjugate gradients, over all systems.
+    pub iterations: usize,
+    /// Whether conjugate gradients failed and the slower sparse Cholesky took their place.
+    pub has_fallen_back: bool,
 }
 
 /// How a static equilibrium is sought.
@@ -106,7 +127,7 @@ impl Solid {
     ///
     /// # Errors
     /// [`StaticError`]; the displacements are then those of the last iteration.
-    pub fn solve_statics(&mut self, options: &StaticOptions) -> Result<(), StaticError> {
+    pub fn solve_statics(&mut self, options: &StaticOptions) -> Result<StaticSummary, StaticError> {
         self.refuse_free_rigid_motion()?;
         let steps = if self.settings.formulation == Formulation::BodyAttached {
             1
@@ -116,16 +137,17 @@ impl Solid {
         let start: Vec<Vec3> = self.state.supports.values().map(|s| s.displacement).collect();
         let begin: Vec<Vec3> =
             self.state.supports.keys().map(|&n| self.state.displacement[n as usize]).collect();
+        let mut summary = StaticSummary::default();
         for step in 1..=steps {
             let fraction = step as f64 / steps as f64;
             // Prescribed displacements grow with the load.
             let target: Vec<Vec3> = begin.iter().zip(&start).map(|(b, s)| b + (s - b) * fraction).collect();
-            self.equilibrate(fraction, &target, options)?;
+            self.equilibrate(fraction, &target, options, &mut summary)?;
         }
         self.state.velocity.fill(Vec3::zeros());
         self.state.acceleration.fill(Vec3::zeros());
         self.is_started = false;
-        Ok(())
+        Ok(summary)
     }
 
     fn equilibrate(
@@ -133,6 +155,7 @@ impl Solid {
         fraction: f64,
         target: &[Vec3],
         options: &StaticOptions,
+        summary: &mut StaticSummary,
     ) -> Result<(), StaticError> {
         let n = self.mesh.nodes.len();
         let held = self.held_components();
@@ -171,32 +194,46 @@ impl Solid {
                 })
                 .collect();
             let mut step = vec![Vec3::zeros(); n];
-            match options.solver {
-                LinearSolver::SparseCholesky => {
-                    SparseCholesky::new(&stiffness, &self.mesh.nodes)?.solve(&right_hand_side, &mut step);
-                }
-                LinearSolver::ConjugateGradients => {
-                    let broken =
-                        || CholeskyError::NotPositive("incomplete factorisation broke down".to_owned());
-                    let preconditioner = IncompleteCholesky::new(&stiffness).ok_or_else(broken)?;
-                    let tolerance = options.tolerance.min(1e-8);
-                    let end = conjugate_gradients::solve(
-                        &stiffness,
-                        &preconditioner,
-                        &right_hand_side,
-                        &mut step,
-                        tolerance,
-                        20 * n + 100,
-                    );
-                    if !(end.relative_residual <= tolerance) {
-                        let (residual, iterations) = (end.relative_residual, end.iterations);
-                        return Err(StaticError::NotConverged { residual, iterations, tolerance });
-                    }
-                }
-            }
+            self.solve_linear(&stiffness, &right_hand_side, &mut step, options, summary)?;
             self.state.displacement.iter_mut().zip(&step).for_each(|(u, d)| *u += d);
         }
         Err(StaticError::NoEquilibrium { fraction, residual, iterations: options.max_iterations })
+    }
+
+    /// Whether more than half of the nodes lie on the boundary: small separators, a sparse Cholesky factor.
+    fn is_thin(&self) -> bool {
+        let facets = self.mesh.boundary().unwrap_or_default();
+        let mut nodes: Vec<u32> = facets.into_iter().flat_map(|f| self.mesh.facet_nodes(f)).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        2 * nodes.len() > self.mesh.nodes.len()
+    }
+
+    /// One linear system by the solver asked for.
+    fn solve_linear(
+        &self,
+        stiffness: &BlockMatrix,
+        right_hand_side: &[Vec3],
+        step: &mut [Vec3],
+        options: &StaticOptions,
+        summary: &mut StaticSummary,
+    ) -> Result<(), StaticError> {
+        summary.linear_solutions += 1;
+        let is_direct = match options.solver {
+            LinearSolver::Automatic => {
+                3 * step.len() <= DIRECT_UNKNOWNS || summary.has_fallen_back || self.is_thin()
+            }
+            solver => solver == LinearSolver::SparseCholesky,
+        };
+        if !is_direct {
+            match iterate(stiffness, right_hand_side, step, options.tolerance.min(1e-8), summary) {
+                Ok(()) => return Ok(()),
+                Err(failure) if options.solver == LinearSolver::ConjugateGradients => return Err(failure),
+                Err(_) => summary.has_fallen_back = true,
+            }
+        }
+        SparseCholesky::new(stiffness, &self.mesh.nodes)?.solve(right_hand_side, step);
+        Ok(())
     }
 
     /// External plus internal forces [N], and the size of the forces that must balance.
@@ -284,4 +321,25 @@ impl Solid {
         let free = eigenvalues.iter().filter(|&&l| l <= 1e-9 * eigenvalues.max().max(1e-300)).count();
         if free > 0 { Err(StaticError::FreeRigidMotion { free }) } else { Ok(()) }
     }
+}
+
+/// Conjugate gradients from zero.
+fn iterate(
+    stiffness: &BlockMatrix,
+    right_hand_side: &[Vec3],
+    step: &mut [Vec3],
+    tolerance: f64,
+    summary: &mut StaticSummary,
+) -> Result<(), StaticError> {
+    let broken = || CholeskyError::NotPositive("incomplete factorisation broke down".to_owned());
+    let preconditioner = IncompleteCholesky::new(stiffness).ok_or_else(broken)?;
+    step.fill(Vec3::zeros());
+    let most = (20 * step.len() + 100).min(MOST_ITERATIONS);
+    let end = conjugate_gradients::solve(stiffness, &preconditioner, right_hand_side, step, tolerance, most);
+    summary.iterations += end.iterations;
+    if end.relative_residual <= tolerance {
+        return Ok(());
+    }
+    let (residual, iterations) = (end.relative_residual, end.iterations);
+    Err(StaticError::NotConverged { residual, iterations, tolerance })
 }

@@ -1,28 +1,15 @@
 //! Patch test: a uniform uniaxial stretch prescribed on the boundary.
 
-use grouser_geometry::{Vec3, box_mesh};
+use grouser_geometry::Vec3;
 
-use super::{Row, VerificationError};
-use crate::{Material, Settings, Solid, StaticOptions, VolumetricTreatment};
+use super::{ELEMENTS, Row, VerificationError, irregular_cube};
+use crate::{Material, Settings, Solid, StaticOptions};
 
 /// Stress in the worst element of each kind.
 pub(super) fn rows() -> Result<Vec<Row>, VerificationError> {
-    let kinds = [
-        ("four nodes", VolumetricTreatment::PerElement, false),
-        ("four nodes, averaged pressure", VolumetricTreatment::NodalAverage, false),
-        ("ten nodes", VolumetricTreatment::PerElement, true),
-    ];
     let mut rows = Vec::new();
-    for (name, volumetric, is_quadratic) in kinds {
-        let mut mesh = box_mesh(Vec3::repeat(1.0), [3, 3, 3]);
-        // Interior nodes out of line, so that no two elements are alike.
-        for (i, x) in mesh.nodes.iter_mut().enumerate() {
-            if x.iter().all(|c| *c > 0.01 && *c < 0.99) {
-                *x +=
-                    0.04 * Vec3::new((7.0 * i as f64).sin(), (5.0 * i as f64).cos(), (3.0 * i as f64).sin());
-            }
-        }
-        let mesh = if is_quadratic { mesh.to_quadratic() } else { mesh };
+    for (name, volumetric, is_quadratic) in ELEMENTS {
+        let mesh = irregular_cube(3, is_quadratic);
         let settings = Settings { volumetric, ..Default::default() };
         let mut solid = Solid::new(mesh.clone(), vec![Material::hooke(1000.0, 1e9, 0.3)], settings)?;
         for facet in mesh.boundary()? {

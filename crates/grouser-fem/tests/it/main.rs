@@ -2,6 +2,7 @@
 
 mod dynamics;
 mod elements;
+mod materials;
 mod motion;
 mod refusals;
 mod statics;
