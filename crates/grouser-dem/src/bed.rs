@@ -245,6 +245,11 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         &mut self.grains
     }
 
+    /// The contact law.
+    pub fn law(&self) -> &L {
+        &self.law
+    }
+
     /// Box, planes, gravity and switches.
     pub fn settings(&self) -> &BedSettings {
         &self.settings

@@ -428,8 +428,11 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             if FrameOf::<T, L>::IS_TRACKED {
                 let pairs = places.map(|place| slab.pairs[place as usize]);
                 for body in 0..2 {
-                    let turned = pairs.map(|pair| input.grains.quaternion(pair.grains()[body]));
-                    let frames = turned.map(FrameOf::<T, L>::from_quaternion);
+                    // Written out: closures over arrays are not inlined into the vectorised pass.
+                    let frame = |pair: Pair| {
+                        FrameOf::<T, L>::from_quaternion(input.grains.quaternion(pair.grains()[body]))
+                    };
+                    let frames = [frame(pairs[0]), frame(pairs[1]), frame(pairs[2]), frame(pairs[3])];
                     <FrameOf<T, L>>::store_four(frames, &mut self.frame[body], group * 4);
                 }
             }
@@ -566,7 +569,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         if !turns_as_sphere::<T, L>() {
             for (k, &place) in places.iter().enumerate() {
                 let [i, j] = slab.pairs[place as usize].grains();
-                let at = |lanes: &[Lanes<T>; 3]| lanes.each_ref().map(|lane| lane.0[k]).into();
+                let at = |lanes: &[Lanes<T>; 3]| Vector::new(lanes[0].0[k], lanes[1].0[k], lanes[2].0[k]);
                 let force: Vector<T> = at(&self.difference);
                 grains.add_load(i, force, at(&self.spin[0]));
                 grains.add_load(j, -force, at(&self.spin[1]));

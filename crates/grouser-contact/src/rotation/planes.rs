@@ -74,12 +74,14 @@ impl PlaneTilting {
         force: Vector<T>,
         arm: T,
     ) -> Vector<T> {
+        // Written out: closures over arrays are not inlined into the vectorised pass.
         let axes = frame.axes();
-        let n = axes.map(|axis| axis.dot(normal));
-        let f = axes.map(|axis| axis.dot(force));
-        let squares = n.map(|component| component * component);
-        let (steepness, one) = (T::from_f64(self.steepness), T::ONE);
-        let signs = n.map(|component| (component * steepness).max(-one).min(one));
+        let n = [axes[0].dot(normal), axes[1].dot(normal), axes[2].dot(normal)];
+        let f = [axes[0].dot(force), axes[1].dot(force), axes[2].dot(force)];
+        let squares = [n[0] * n[0], n[1] * n[1], n[2] * n[2]];
+        let steepness = T::from_f64(self.steepness);
+        let sign = |n: T| (n * steepness).max(-T::ONE).min(T::ONE);
+        let signs = [sign(n[0]), sign(n[1]), sign(n[2])];
         let mut torque = [T::ZERO; 3];
         let mut torsion = T::ZERO;
         for (i, (j, k, sign)) in PLANES.into_iter().enumerate() {
@@ -94,8 +96,8 @@ impl PlaneTilting {
         }
         // A force along the normal has no moment about its own line; the sum over planes would leave one.
         let torsion = torsion * normal_force;
-        let [a, b, c] = [0, 1, 2].map(|i| axes[i] * ((torque[i] - n[i] * torsion) * arm));
-        a + b + c
+        let part = |i: usize| axes[i] * ((torque[i] - n[i] * torsion) * arm);
+        part(0) + part(1) + part(2)
     }
 }
 
@@ -115,8 +117,9 @@ impl<T: Real> RotationLaw<T> for PlaneTilting {
         let (normal, normal_force) = (contact.normal, response.normal_force);
         let force = normal * normal_force + response.tangential_force;
         // From the second body normal and force are both opposite, which leaves the torque as it is.
-        let torques =
-            [0, 1].map(|b| self.torque(&bodies[b].frame, normal, normal_force, force, bodies[b].arm));
+        let torque =
+            |body: &Body<T, Quaternion<T>>| self.torque(&body.frame, normal, normal_force, force, body.arm);
+        let torques = [torque(&bodies[0]), torque(&bodies[1])];
         let of_spheres = Couples::of_spheres(contact, response, bodies).torques;
         let spent = |b: usize| (of_spheres[b] - torques[b]).dot(bodies[b].spin);
         (Couples { torques, spent: spent(0) + spent(1) }, ())

@@ -41,13 +41,14 @@ impl<T: Real> Blocked<T> for Quaternion<T> {
     }
     #[inline(always)]
     fn store_four(four: [Self; 4], block: &mut Self::Block, k: usize) {
+        let [a, b, c, d] = [&four[0].0, &four[1].0, &four[2].0, &four[3].0];
         for (component, lanes) in block.iter_mut().enumerate() {
-            lanes.0[k..k + 4].copy_from_slice(&four.map(|quaternion| quaternion.0[component]));
+            lanes.0[k..k + 4].copy_from_slice(&[a[component], b[component], c[component], d[component]]);
         }
     }
     #[inline(always)]
     fn load(block: &Self::Block, k: usize) -> Self {
-        Self(std::array::from_fn(|component| block[component].0[k]))
+        Self([block[0].0[k], block[1].0[k], block[2].0[k], block[3].0[k]])
     }
 }
 
@@ -55,6 +56,7 @@ impl<T: Real> Frame<T> for Quaternion<T> {
     const IS_TRACKED: bool = true;
     #[inline(always)]
     fn from_quaternion(quaternion: [f64; 4]) -> Self {
-        Self(quaternion.map(T::from_f64))
+        let [x, y, z, w] = quaternion;
+        Self([T::from_f64(x), T::from_f64(y), T::from_f64(z), T::from_f64(w)])
     }
 }

@@ -75,22 +75,31 @@ impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
     /// ℓ·n is the height of the centre over the corner; h_i sgn n_i becomes h_i n_i/w within the width of the passage.
     #[inline(always)]
     pub fn lever<T: Real>(&self, frame: &Quaternion<T>, normal: Vector<T>, arm: T) -> Vector<T> {
-        let axes = frame.axes();
-        let n = axes.map(|axis| axis.dot(normal));
-        let one = T::ONE;
-        let signs = if IS_ROUND {
-            let squares = n.map(|component| component * component);
-            let width = T::from_f64(self.width);
-            [0, 1, 2].map(|i| {
-                let [a, b, c] = self.circles[i].map(T::from_f64);
-                n[i] / (squares[0] * a + squares[1] * b + squares[2] * c).sqrt().max(width)
-            })
+        // Written out: closures over arrays are not inlined into the vectorised pass.
+        let [e1, e2, e3] = frame.axes();
+        let (n1, n2, n3) = (e1.dot(normal), e2.dot(normal), e3.dot(normal));
+        let (sign1, sign2, sign3) = if IS_ROUND {
+            let (a, b, c) = (n1 * n1, n2 * n2, n3 * n3);
+            let [first, second, third] = &self.circles;
+            (
+                n1 / self.length(first, a, b, c),
+                n2 / self.length(second, a, b, c),
+                n3 / self.length(third, a, b, c),
+            )
         } else {
             let steepness = T::from_f64(1.0 / self.width);
-            n.map(|component| (component * steepness).max(-one).min(one))
+            let sign = |n: T| (n * steepness).max(-T::ONE).min(T::ONE);
+            (sign(n1), sign(n2), sign(n3))
         };
-        let [a, b, c] = [0, 1, 2].map(|i| axes[i] * (signs[i] * (T::from_f64(self.half[i]) * arm)));
-        a + b + c
+        let half = |i: usize| T::from_f64(self.half[i]) * arm;
+        e1 * (sign1 * half(0)) + e2 * (sign2 * half(1)) + e3 * (sign3 * half(2))
+    }
+
+    /// Length of the normal's part in the figure of one axis, not below the width of the passage; squares of its components given.
+    #[inline(always)]
+    fn length<T: Real>(&self, shares: &[f64; 3], a: T, b: T, c: T) -> T {
+        let of = |i: usize| T::from_f64(shares[i]);
+        (a * of(0) + b * of(1) + c * of(2)).sqrt().max(T::from_f64(self.width))
     }
 
     /// Torque [N·m] of `force` [N] on a grain turned by `frame`, in the world frame; arguments as for [`Tilting::lever`].
@@ -108,7 +117,10 @@ impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
     /// Levers of both bodies. From the second one the normal is opposite, and so is its lever: both are given for `normal`.
     #[inline(always)]
     fn levers<T: Real>(&self, normal: Vector<T>, bodies: &[Body<T, Quaternion<T>>; 2]) -> [Vector<T>; 2] {
-        [0, 1].map(|b| self.lever(&bodies[b].frame, normal, bodies[b].arm))
+        [
+            self.lever(&bodies[0].frame, normal, bodies[0].arm),
+            self.lever(&bodies[1].frame, normal, bodies[1].arm),
+        ]
     }
 }
 
@@ -182,7 +194,7 @@ impl<T: Real, const IS_ROUND: bool> RotationLaw<T> for Tilting<IS_ROUND> {
         let turned = bodies[0].spin.cross(levers[0]) + bodies[1].spin.cross(levers[1]);
         // What lifting the centres over the corners takes.
         let lifted = turned.dot(pushed);
-        let torques = levers.map(|lever| force.cross(lever));
+        let torques = [force.cross(levers[0]), force.cross(levers[1])];
         (Couples { torques, spent: lifted }, ())
     }
 

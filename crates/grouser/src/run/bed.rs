@@ -58,12 +58,18 @@ pub fn loose_bed<L: Law>(scenario: &Scenario, soil: &Grains, law: L) -> Result<L
         planes,
         gravity: Vec3::from(scenario.gravity_m_s2),
         rotation: match scenario.dials.rotation {
-            Rotation::Free => grouser_dem::Rotation::Free,
             Rotation::Fixed => grouser_dem::Rotation::Fixed,
+            _ => grouser_dem::Rotation::Free,
         },
         has_ledger: false,
     };
-    Ok(Bed::new(spheres, settings, materials.table()?, law)?)
+    let mut bed = Bed::new(spheres, settings, materials.table()?, law)?;
+    bed.set_background_damping(scenario.dials.background_damping_n_s_m);
+    // Angular grains lie in any direction; the same seed gives the same ones.
+    if bed.grains().orientations.is_some() {
+        bed.grains_mut().turn_randomly(soil.seed);
+    }
+    Ok(bed)
 }
 
 /// Everything that a settled bed depends on, as a text: beds with the same key have the same bytes.

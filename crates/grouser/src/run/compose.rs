@@ -4,7 +4,7 @@ use super::driver::Driver;
 use super::on_bed::OnBed;
 use super::press::Pressing;
 use super::study;
-use super::{Ended, Law, Options, Progress, RunError, WithLaw, with_law};
+use super::{Ended, Law, Options, Progress, RunError, SetupError, WithLaw, with_law};
 use crate::scene::{Grains, Scenario, Soil};
 use std::fs;
 
@@ -19,7 +19,9 @@ pub fn run(scenario: &Scenario, options: &Options, progress: &mut dyn Progress) 
         return study::run(driver, study);
     }
     match &scenario.soil {
-        Soil::Grains(soil) => with_law(&scenario.dials, OnGrains { driver, soil }),
+        Soil::Grains(soil) => {
+            with_law(&scenario.dials, OnGrains { driver, soil }).map_err(SetupError::from)?
+        }
     }
 }
 

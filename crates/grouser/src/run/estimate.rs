@@ -57,7 +57,7 @@ fn on_grains(scenario: &Scenario, soil: &Grains) -> Result<Estimate, SetupError>
     let tool_s = Indenter::count(scenario) as f64 * scenario.motion.as_ref().map_or(0.0, Motion::duration);
     let tool_steps = (tool_s / step.step_s) as u64;
     let copies = if tool_steps > 0 { 2 } else { 1 };
-    let rate = with_law(&scenario.dials, MeasuredRate { n_grains })?;
+    let rate = with_law(&scenario.dials, MeasuredRate { n_grains })??;
     let binding = step.binding();
     Ok(Estimate {
         lines: vec![

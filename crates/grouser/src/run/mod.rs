@@ -31,7 +31,7 @@ pub use driver::Options;
 pub use ended::{Ended, RunError};
 pub use estimate::{Estimate, estimate};
 pub use experiment::{Advanced, Experiment, Outcome, Picture, Section, Status, Verdict};
-pub use law::{Law, LawBed, WithLaw, with_law};
+pub use law::{Law, LawBed, Possible, WithLaw, with_law};
 pub use materials::Materials;
 pub use on_bed::{OnBed, Pass};
 pub use press::Pressing;

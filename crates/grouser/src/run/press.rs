@@ -113,11 +113,11 @@ impl<L: Law> Pass<L> for Pressing<L> {
     }
 
     fn advance(&mut self, _: &Scenario) -> Result<(), Failure> {
-        let (law, dt) = (L::default(), self.time_step);
+        let dt = self.time_step;
         let n_steps = (self.n_steps - self.steps_done)
             .min(self.steps_per_sample - self.steps_done % self.steps_per_sample);
         let Self { bed, tool, sum, steps_done, .. } = self;
-        let table = bed.pair_table().clone();
+        let (law, table) = (*bed.law(), bed.pair_table().clone());
         bed.run(n_steps, dt, |grains| {
             // The tool moves, meets the grains, and both receive their forces.
             let load = tool.step(grains, &law, &table, dt)?;

@@ -201,6 +201,12 @@ impl<'a> Comparison<'a> {
                     source: self.measured.map(|measured| measured.source.clone()),
                 });
             }
+            for (name, share) in
+                [("a quarter of the depth", 0.25), ("half the depth", 0.5), ("the depth", 1.0)]
+            {
+                let name = format!("{label}: pressure at {name}");
+                metrics.push(Metric::new(&name, plate.mean_pressure_before(share), "Pa"));
+            }
             metrics.push(Metric {
                 name: format!("{label}: energy residual"),
                 value: plate.ledger.residual_fraction(),
@@ -235,6 +241,16 @@ impl Pressed {
         let radius = self.diameter / 2.0;
         let points = sinkage.into_iter().zip(pressure).filter(|(sinkage, _)| *sinkage > 0.0);
         points.map(|(sinkage, pressure)| PlatePoint { radius, sinkage, pressure }).collect()
+    }
+
+    /// Mean pressure over the tenth of the way before `share` of it [Pa]: single samples of few grains jump.
+    fn mean_pressure_before(&self, share: f64) -> f64 {
+        let points = self.points();
+        let depth = points.last().map_or(0.0, |point| point.sinkage);
+        let window = (share - 0.1) * depth..=share * depth;
+        let seen = points.iter().filter(|point| window.contains(&point.sinkage));
+        let (sum, n) = seen.fold((0.0, 0), |(sum, n), point| (sum + point.pressure, n + 1));
+        if n > 0 { sum / f64::from(n) } else { 0.0 }
     }
 
     /// Pressure at a sinkage, between the samples around it; `None` beyond them.

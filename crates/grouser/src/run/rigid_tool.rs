@@ -52,8 +52,9 @@ impl<L: Law> RigidTool<L> {
     ) -> Result<Wrench, Failure> {
         self.body.predict(time_step);
         let step = Step { law, table, time_step, fastest: grains.fastest() };
-        let Grains { spheres, ids, loads, .. } = grains;
-        let load = self.contacts.forces(self.body.motion(), (spheres, ids), loads, &step);
+        let Grains { spheres, ids, loads, orientations, .. } = grains;
+        let seen = (&spheres[..], &ids[..], orientations.as_deref());
+        let load = self.contacts.forces_on_turned(self.body.motion(), seen, loads, &step, |_| ());
         self.body.correct(&load, time_step);
         match self.contacts.deepest() {
             Some(deepest) if deepest.depth > LARGEST_OVERLAP => {

@@ -24,6 +24,10 @@ pub struct ToolLedger {
     pub sliding: f64,
     /// Lost by tangential motion without sliding: dashpots, and springs that unloading slackens.
     pub sticking: f64,
+    /// Spent on turning by rotation laws; tilting grains give back what they took.
+    pub turning: f64,
+    /// Lost to background damping.
+    pub background: f64,
 }
 
 impl ToolLedger {
@@ -34,6 +38,7 @@ impl ToolLedger {
         contacts += *tool;
         let lost = |pick: fn(&ContactLedger) -> f64| pick(&contacts) - pick(&before.contacts);
         let (normal_damping, sliding) = (lost(|l| l.normal_damping), lost(|l| l.sliding));
+        let turning = lost(|l| l.turning);
         Self {
             input: work,
             kinetic: after.kinetic + after.rotational - before.kinetic - before.rotational,
@@ -42,7 +47,9 @@ impl ToolLedger {
             gravitational: after.gravitational - before.gravitational,
             normal_damping,
             sliding,
-            sticking: lost(ContactLedger::dissipated) - normal_damping - sliding,
+            sticking: lost(ContactLedger::dissipated) - normal_damping - sliding - turning,
+            turning,
+            background: after.background_damping - before.background_damping,
         }
     }
 
@@ -53,7 +60,7 @@ impl ToolLedger {
 
     /// Energy lost [J].
     pub fn dissipated(&self) -> f64 {
-        self.normal_damping + self.sliding + self.sticking
+        self.normal_damping + self.sliding + self.sticking + self.turning + self.background
     }
 
     /// What the ledger misses, over the larger of work and loss [-].
@@ -78,6 +85,8 @@ impl ToolLedger {
                 entry("lost in normal dashpots", |l| l.normal_damping),
                 entry("lost by sliding friction", |l| l.sliding),
                 entry("lost by tangential dashpots and slackened springs", |l| l.sticking),
+                entry("spent on turning", |l| l.turning),
+                entry("lost to background damping", |l| l.background),
             ],
         )
     }

@@ -1,5 +1,6 @@
 //! The dials between speed and accuracy.
 
+use grouser_contact::{ArmNormalisation, GrainInertia, GrainShape, TiltingSettings};
 use serde::{Deserialize, Serialize};
 
 /// Choices that change cost and accuracy but not what the scene is.
@@ -10,10 +11,14 @@ pub struct Dials {
     pub time_step_fraction: f64,
     /// What happens while the dashpot would pull two parting grains together.
     pub restitution_tail: RestitutionTail,
+    /// Normal and tangential force between grains.
+    pub forces: Forces,
     /// How grains rotate.
     pub rotation: Rotation,
     /// Scalars that grains are computed with.
     pub precision: Precision,
+    /// Damping of every grain's absolute velocity [N·s/m]; 0 is off.
+    pub background_damping_n_s_m: f64,
 }
 
 impl Default for Dials {
@@ -21,8 +26,10 @@ impl Default for Dials {
         Dials {
             time_step_fraction: 0.2,
             restitution_tail: RestitutionTail::default(),
+            forces: Forces::default(),
             rotation: Rotation::default(),
             precision: Precision::default(),
+            background_damping_n_s_m: 0.0,
         }
     }
 }
@@ -37,14 +44,111 @@ pub enum RestitutionTail {
     CutCorrected,
 }
 
+/// Normal and tangential force between grains.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub enum Forces {
+    /// Hertz–Mindlin with the restitution of the materials.
+    #[default]
+    HertzMindlin,
+    /// Hertz with a constant dashpot, a linear tangential spring, stick and slip angles (Lichtenheldt 2013); the friction of the
+    /// materials is that of slipping, their restitution is not used.
+    Dlr(Dlr),
+}
+
+/// Constants of [`Forces::Dlr`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Dlr {
+    /// Tangential stiffness c_t [N/m].
+    pub tangential_stiffness_n_m: f64,
+    /// Normal damping k_n [N·s/m].
+    pub normal_damping_n_s_m: f64,
+    /// Friction at which a sticking contact begins to slip over that of slipping, tan φ_h / tan φ_g [-].
+    #[serde(default = "one")]
+    pub stick_over_slip: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
 /// How grains rotate.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub enum Rotation {
     /// As spheres do.
     #[default]
     Free,
     /// Not at all: an upper bound of strength.
     Fixed,
+    /// As spheres do, against a rolling resistance.
+    Rolling(Rolling),
+    /// As angular grains do.
+    Tilting(Tilting),
+}
+
+/// Rolling resistance.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Rolling {
+    /// A torque of constant size against the rolling.
+    Constant {
+        /// Coefficient of rolling friction [-].
+        friction: f64,
+    },
+    /// A spring and a dashpot up to a limit: holds slopes at rest.
+    ElasticPlastic {
+        /// Coefficient of rolling friction [-].
+        friction: f64,
+        /// Share of critical damping [-].
+        #[serde(default = "damping_ratio")]
+        damping_ratio: f64,
+    },
+}
+
+fn damping_ratio() -> f64 {
+    0.3
+}
+
+/// Angular grains, `docs/theory/tilting.md`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tilting {
+    /// Shape by name or by the figures in its three planes.
+    pub shape: GrainShape,
+    /// How long the arms are.
+    #[serde(default)]
+    pub arms: ArmNormalisation,
+    /// Moments of inertia.
+    #[serde(default)]
+    pub inertia: GrainInertia,
+    /// Width of the passage between two corners [rad].
+    #[serde(default = "smoothing")]
+    pub smoothing_rad: f64,
+    /// Whether the three figures are sections of one body.
+    #[serde(default)]
+    pub figures: Figures,
+}
+
+fn smoothing() -> f64 {
+    TiltingSettings::of(GrainShape::Cube).smoothing_rad
+}
+
+impl Tilting {
+    /// The same for the contact law.
+    pub fn settings(&self) -> TiltingSettings {
+        let Self { shape, arms, inertia, smoothing_rad, .. } = *self;
+        TiltingSettings { shape, arms, inertia, smoothing_rad }
+    }
+}
+
+/// What the three figures of an angular grain are.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Figures {
+    /// Sections of one body: beds come to rest.
+    #[default]
+    OneBody,
+    /// Each for itself, as the law is printed: takes any figures, and drives beds of elongated grains.
+    EachForItself,
 }
 
 /// Scalars that grains are computed with.

@@ -16,7 +16,7 @@ mod study;
 mod tool;
 mod validate;
 
-pub use dials::{Dials, Precision, RestitutionTail, Rotation};
+pub use dials::{Dials, Dlr, Figures, Forces, Precision, RestitutionTail, Rolling, Rotation, Tilting};
 pub use locate::{Found, Path, locate};
 pub use material::{Material, Pair};
 pub use mesh::Mesh;

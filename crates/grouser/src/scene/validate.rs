@@ -1,5 +1,6 @@
 //! Physics that a scene must obey, refused before anything is computed.
 
+mod dials;
 mod grains;
 mod press;
 mod study;
@@ -59,6 +60,7 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
         ),
         (None, None) => {}
     }
+    dials::validate(&mut check, &scenario.dials);
     let fraction = scenario.dials.time_step_fraction;
     check.require(
         "dials.time_step_fraction",

@@ -1,0 +1,163 @@
+//! What each rotation law costs on one settled bed, alternately in one run: `cargo run --release -p benches --bin rotation_cost`.
+//!
+//! The bed of `dem_throughput`: radius 4 mm ± 5 %, 2600 kg/m³, E = 10 MPa, ν = 0.3, friction and restitution 0.5, time step 40 µs,
+//! 0.2 m × 0.2 m periodic, floor at z = 0. It settles as spheres; then each law takes over from the same state.
+
+use clap::Parser;
+use grouser_contact::*;
+use grouser_dem::*;
+use grouser_geometry::Vec3;
+use std::error::Error;
+use std::io::Read;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Cost of the rotation laws.
+#[derive(Parser)]
+struct Arguments {
+    /// Read the bed from a file (`type radius x y z` a line; .gz too) instead of settling one
+    #[arg(long)]
+    state: Option<PathBuf>,
+    /// Grains of the bed that is settled here
+    #[arg(long, default_value_t = 20_000)]
+    grains: usize,
+    /// Steps of a repeat
+    #[arg(long, default_value_t = 5)]
+    steps: u64,
+    /// Steps before the clock starts: few, so that every law has the contacts of the settled spheres
+    #[arg(long, default_value_t = 20)]
+    warm: u64,
+    /// Repeats, alternately; the fastest of each law counts
+    #[arg(long, default_value_t = 40)]
+    repeats: u32,
+}
+
+const TIME_STEP: f64 = 4e-5;
+const SAND: Material = Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 2600.0 };
+type Forces = HertzMindlin<false, false>;
+
+/// A bed whatever its law.
+trait Timed {
+    fn run(&mut self, n_steps: u64) -> Result<(), Failure>;
+    fn contacts_per_grain(&self) -> f64;
+}
+
+impl<L: ContactLaw<f64>> Timed for Bed<L> {
+    fn run(&mut self, n_steps: u64) -> Result<(), Failure> {
+        Bed::run(self, n_steps, TIME_STEP, |_| Ok::<(), Failure>(()))
+    }
+    fn contacts_per_grain(&self) -> f64 {
+        2.0 * self.n_contacts() as f64 / self.grains().len() as f64
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = Arguments::parse();
+    rayon::ThreadPoolBuilder::new().num_threads(1).build_global()?;
+    let spheres = match &arguments.state {
+        Some(path) => read(path)?,
+        None => settled(arguments.grains)?,
+    };
+    let n_grains = spheres.len() as f64;
+    let of = |shape| TiltingSettings::of(shape);
+    let half = GrainShape::Angular { aspect_ratio: 0.5 };
+    let mut beds: Vec<(&str, Box<dyn Timed>)> = vec![
+        ("free", boxed(&spheres, Rotation::Free, HertzMindlin::<false, false>)?),
+        ("fixed", boxed(&spheres, Rotation::Fixed, HertzMindlin::<false, false>)?),
+        ("rolling, constant", rotating(&spheres, ConstantRolling::new(0.1)?)?),
+        ("rolling, elastic-plastic", rotating(&spheres, ElasticPlasticRolling::new(0.1, 0.3)?)?),
+        ("tilting, box", rotating(&spheres, Tilting::<false>::new(&of(half))?)?),
+        ("tilting, disc", {
+            rotating(&spheres, Tilting::<true>::new(&of(GrainShape::Disc { aspect_ratio: 0.5 }))?)?
+        }),
+        ("tilting, three rectangles", rotating(&spheres, PlaneTilting::new(&of(half))?)?),
+    ];
+    for (_, bed) in &mut beds {
+        bed.run(arguments.warm)?;
+    }
+    let mut fastest = vec![f64::INFINITY; beds.len()];
+    for _ in 0..arguments.repeats {
+        for (time, (_, bed)) in fastest.iter_mut().zip(&mut beds) {
+            let begun = Instant::now();
+            bed.run(arguments.steps)?;
+            *time = time.min(begun.elapsed().as_secs_f64());
+        }
+    }
+    println!("{n_grains} grains, f64, one thread");
+    for (time, (name, bed)) in fastest.iter().zip(&beds) {
+        let rate = n_grains * arguments.steps as f64 / time * 1e-6;
+        let contacts = bed.contacts_per_grain();
+        println!(
+            "  {name:<26} {rate:6.2} M grain-steps/s  {:5.2} × free  {contacts:.2} contacts a grain",
+            time / fastest[0]
+        );
+    }
+    Ok(())
+}
+
+fn rotating<R: RotationLaw<f64>>(spheres: &[Sphere], rotation: R) -> Result<Box<dyn Timed>, Box<dyn Error>> {
+    boxed(spheres, Rotation::Free, Rotating { forces: Forces {}, rotation })
+}
+
+fn boxed<L: ContactLaw<f64>>(
+    spheres: &[Sphere],
+    rotation: Rotation,
+    law: L,
+) -> Result<Box<dyn Timed>, Box<dyn Error>> {
+    Ok(Box::new(bed(spheres.to_vec(), rotation, law)?))
+}
+
+fn bed<L: ContactLaw<f64>>(
+    spheres: Vec<Sphere>,
+    rotation: Rotation,
+    law: L,
+) -> Result<Bed<L>, Box<dyn Error>> {
+    let top = spheres.iter().map(|sphere| sphere.position.z).fold(0.5, f64::max) + 0.01;
+    let settings = BedSettings {
+        domain: domain(top),
+        planes: vec![Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0 }],
+        gravity: Vec3::new(0.0, 0.0, -9.81),
+        rotation,
+        has_ledger: false,
+    };
+    let between = Interaction { restitution: 0.5, friction: 0.5 };
+    let table = PairTable::new(&[SAND], Tail::CutCorrected, |_, _| between)?;
+    let mut bed = Bed::new(spheres, settings, table, law)?;
+    if bed.grains().orientations.is_some() {
+        bed.grains_mut().turn_randomly(1);
+    }
+    Ok(bed)
+}
+
+fn domain(top: f64) -> Domain {
+    Domain { lower: Vec3::zeros(), upper: Vec3::new(0.2, 0.2, top), is_periodic: [true, true, false] }
+}
+
+/// A random packing that has come to rest as spheres.
+fn settled(n_grains: usize) -> Result<Vec<Sphere>, Box<dyn Error>> {
+    let radii = RadiusDistribution::Uniform { from_m: 0.0038, to_m: 0.0042 };
+    let layer = Layer { radii, n_grains, density: SAND.density_kg_m3, material: 0 };
+    let packing = random_packing::<F64>(&domain(0.5), &[layer], 1)?;
+    let mut bed = bed(packing, Rotation::Free, HertzMindlin::<false, false>)?;
+    let mut settling = Settling::new(SettleCriterion { longest_s: 10.0, ..Default::default() }, TIME_STEP);
+    while settling.advance(&mut bed)?.is_none() {}
+    Ok(bed.grains().spheres.clone())
+}
+
+fn read(path: &PathBuf) -> Result<Vec<Sphere>, Box<dyn Error>> {
+    let bytes = std::fs::read(path)?;
+    let mut text = String::new();
+    if path.extension().is_some_and(|end| end == "gz") {
+        flate2::read::MultiGzDecoder::new(&bytes[..]).read_to_string(&mut text)?;
+    } else {
+        text = String::from_utf8(bytes)?;
+    }
+    let mut spheres = Vec::new();
+    for line in text.lines().filter(|line| !line.starts_with('#')) {
+        let values: Vec<f64> = line.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+        if let [_, radius, x, y, z, ..] = values[..] {
+            spheres.push(sphere(Vec3::new(x, y, z), radius, SAND.density_kg_m3, 0));
+        }
+    }
+    Ok(spheres)
+}
