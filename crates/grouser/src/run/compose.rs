@@ -3,6 +3,7 @@
 use super::driver::Driver;
 use super::on_bed::OnBed;
 use super::press::Pressing;
+use super::slip_sweep::SlipSweep;
 use super::study;
 use super::{Ended, Law, Options, Progress, RunError, SetupError, WithLaw, with_law};
 use crate::scene::{Grains, Scenario, Soil};
@@ -22,6 +23,7 @@ pub fn run(scenario: &Scenario, options: &Options, progress: &mut dyn Progress) 
         Soil::Grains(soil) => {
             with_law(&scenario.dials, OnGrains { driver, soil }).map_err(SetupError::from)?
         }
+        Soil::PlateTested(_) => driver.drive(|_| SlipSweep::begin(scenario)),
     }
 }
 

@@ -20,6 +20,8 @@ mod press_outcome;
 mod progress;
 mod report;
 mod rigid_tool;
+mod slip_outcome;
+mod slip_sweep;
 mod study;
 mod study_outcome;
 mod time_step;
@@ -63,6 +65,9 @@ pub enum SetupError {
     /// The file of a tool's surface.
     #[error("{0}")]
     Mesh(String),
+    /// A single wheel and its ground.
+    #[error("{0}")]
+    Wheel(String),
     /// A variant of a study.
     #[error("{0}")]
     Variant(String),

@@ -7,7 +7,7 @@ use super::tool_ledger::ToolLedger;
 use crate::calibration::{Estimated, PlateFit, PlatePoint, fit_plates};
 use crate::output::chart::{Chart, Mark, Series};
 use crate::output::summary::Metric;
-use crate::scene::{Motion, PressureSinkage, Reference, Scenario};
+use crate::scene::{Motion, PressureSinkage, Scenario};
 use std::collections::BTreeMap;
 
 /// Everything that follows from the tools that have reached their depth.
@@ -57,7 +57,7 @@ fn conventions() -> BTreeMap<&'static str, String> {
 
 impl<'a> Comparison<'a> {
     fn new(scenario: &'a Scenario, plates: &'a [Pressed]) -> Self {
-        let measured = scenario.reference.iter().map(|Reference::PressureSinkage(measured)| measured).next();
+        let measured = scenario.reference.iter().find_map(|reference| reference.plates());
         let depth = match &scenario.motion {
             Some(Motion::Press(press)) => press.depth_m,
             _ => 0.0,

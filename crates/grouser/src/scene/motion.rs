@@ -1,5 +1,6 @@
 //! How tools move.
 
+use super::Slips;
 use serde::{Deserialize, Serialize};
 
 /// Kinds of motion.
@@ -7,20 +8,24 @@ use serde::{Deserialize, Serialize};
 pub enum Motion {
     /// Straight down at constant speed.
     Press(Press),
+    /// Rolling at given slips, each at steady state.
+    Slips(Slips),
 }
 
 impl Motion {
-    /// Largest speed of a tool [m/s].
+    /// Largest speed of a tool [m/s]; zero where time does not count.
     pub fn speed(&self) -> f64 {
         match self {
             Motion::Press(press) => press.speed_m_s,
+            Motion::Slips(_) => 0.0,
         }
     }
 
-    /// Time that it takes [s].
+    /// Time that it takes [s]; zero where time does not count.
     pub fn duration(&self) -> f64 {
         match self {
             Motion::Press(press) => (press.gap_m + press.depth_m) / press.speed_m_s,
+            Motion::Slips(_) => 0.0,
         }
     }
 }

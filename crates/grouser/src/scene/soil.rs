@@ -1,5 +1,6 @@
-//! The ground: for now grains in a box.
+//! The ground: grains in a box, or a law known from plate tests.
 
+use super::PlateTested;
 use serde::{Deserialize, Serialize};
 
 /// Kinds of ground.
@@ -7,13 +8,17 @@ use serde::{Deserialize, Serialize};
 pub enum Soil {
     /// Spheres that fall into a box and come to rest.
     Grains(Grains),
+    /// Flat ground known from plate tests alone.
+    PlateTested(PlateTested),
 }
 
 impl Soil {
     /// The bed of grains, when the ground is one.
     pub fn grains(&self) -> Option<&Grains> {
-        let Soil::Grains(grains) = self;
-        Some(grains)
+        match self {
+            Soil::Grains(grains) => Some(grains),
+            Soil::PlateTested(_) => None,
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! What meets the ground.
 
-use super::Mesh;
+use super::{Mesh, RigidWheel};
 use serde::{Deserialize, Serialize};
 
 /// Kinds of tools.
@@ -10,14 +10,17 @@ pub enum Tool {
     Plates(Plates),
     /// A rigid body with a surface from a file.
     Mesh(Mesh),
+    /// A single rigid wheel.
+    RigidWheel(RigidWheel),
 }
 
 impl Tool {
-    /// Name of the material that grains touch.
+    /// Name of the material that grains touch; empty for tools that meet none.
     pub fn material(&self) -> &str {
         match self {
             Tool::Plates(plates) => &plates.material,
             Tool::Mesh(mesh) => &mesh.material,
+            Tool::RigidWheel(_) => "",
         }
     }
 }

@@ -3,9 +3,10 @@
 mod dials;
 mod grains;
 mod press;
+mod slips;
 mod study;
 
-use super::{Motion, Outputs, Reference, Scenario, Soil};
+use super::{Motion, Outputs, Scenario, Soil, Tool};
 use crate::diagnostic::Diagnostic;
 
 /// A value that cannot be, with its path in the scenario.
@@ -43,8 +44,19 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
         grains::validate(&mut check, scenario, bed);
     }
     match (&scenario.tool, &scenario.motion) {
-        (Some(tool), Some(Motion::Press(press))) => match &scenario.soil {
-            Soil::Grains(bed) => press::validate(&mut check, scenario, bed, tool, press),
+        (Some(tool), Some(motion)) => match (&scenario.soil, tool, motion) {
+            (Soil::Grains(bed), Tool::Plates(_) | Tool::Mesh(_), Motion::Press(press)) => {
+                press::validate(&mut check, scenario, bed, tool, press);
+            }
+            (Soil::PlateTested(soil), Tool::RigidWheel(wheel), Motion::Slips(slips)) => {
+                slips::validate(&mut check, scenario, soil, wheel, slips);
+            }
+            _ => check.fail(
+                "motion",
+                "no experiment puts this soil, tool and motion together",
+                "Grains with Plates or Mesh and Press; PlateTested with RigidWheel and Slips",
+                "a tool or a motion of another kind of scene",
+            ),
         },
         (Some(_), None) => check.fail(
             "tool",
@@ -58,7 +70,16 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
             "`tool: Plates(…)`",
             "the tool was deleted or commented out",
         ),
-        (None, None) => {}
+        (None, None) => {
+            if let Soil::PlateTested(_) = &scenario.soil {
+                check.fail(
+                    "soil",
+                    "ground known from plate tests has nothing to show alone",
+                    "`tool: RigidWheel(…)` and `motion: Slips(…)`",
+                    "tool and motion were deleted or commented out",
+                );
+            }
+        }
     }
     dials::validate(&mut check, &scenario.dials);
     let fraction = scenario.dials.time_step_fraction;
@@ -108,8 +129,8 @@ fn materials(check: &mut Check, scenario: &Scenario) {
 }
 
 fn references(check: &mut Check, scenario: &Scenario) {
-    for (i, Reference::PressureSinkage(measured)) in scenario.reference.iter().enumerate() {
-        if measured.source.trim().is_empty() {
+    for (i, reference) in scenario.reference.iter().enumerate() {
+        if reference.source().trim().is_empty() {
             check.fail(
                 &format!("reference[{i}].source"),
                 "a measurement without a source",
@@ -117,7 +138,16 @@ fn references(check: &mut Check, scenario: &Scenario) {
                 "left empty while drafting",
             );
         }
-        for (j, plate) in measured.plates.iter().enumerate() {
+        for (j, point) in reference.wheel().iter().flat_map(|wheel| &wheel.points).enumerate() {
+            for (field, value) in [
+                ("slip", point.slip),
+                ("sinkage_m", point.sinkage_m),
+                ("pull_over_load", point.pull_over_load),
+            ] {
+                check.finite(&format!("reference[{i}].points[{j}].{field}"), value);
+            }
+        }
+        for (j, plate) in reference.plates().iter().flat_map(|measured| &measured.plates).enumerate() {
             let path = format!("reference[{i}].plates[{j}]");
             check.positive(&format!("{path}.diameter_m"), plate.diameter_m, "a diameter [m]");
             for (k, &(sinkage, pressure)) in plate.points.iter().enumerate() {

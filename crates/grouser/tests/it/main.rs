@@ -3,6 +3,7 @@
 mod bytes;
 mod killed;
 mod messages;
+mod slips;
 mod study;
 
 use std::path::Path;

@@ -1,13 +1,14 @@
 //! Checks of plates pressed into a bed.
 
 use super::{Check, grains};
-use crate::scene::{Grains, Plates, Press, Reference, Scenario, Tool};
+use crate::scene::{Grains, Plates, Press, Scenario, Tool};
 
 pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, tool: &Tool, press: &Press) {
     let before = check.problems.len();
     check.material(scenario, "tool.material", tool.material());
     match tool {
         Tool::Plates(plates) => validate_plates(check, bed, plates),
+        Tool::RigidWheel(_) => {}
         Tool::Mesh(mesh) => {
             check.positive(
                 "tool.scale",
@@ -60,7 +61,8 @@ fn largest_measured(scenario: &Scenario, depth: f64) -> f64 {
     scenario
         .reference
         .iter()
-        .flat_map(|Reference::PressureSinkage(measured)| &measured.plates)
+        .filter_map(|reference| reference.plates())
+        .flat_map(|measured| &measured.plates)
         .flat_map(|plate| &plate.points)
         .filter(|(sinkage, _)| *sinkage <= depth)
         .map(|&(_, pressure)| pressure)
