@@ -1,5 +1,7 @@
 //! Integration tests of the soil contact model.
 
+mod ground_and_laws;
+mod machine_traction;
 mod multi_pass;
 mod restart;
 mod single_wheel;
