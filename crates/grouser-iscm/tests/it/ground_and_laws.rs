@@ -20,12 +20,10 @@ fn soil() -> PressureField {
 /// Vertical force \[N\] on a wheel of 0.3 m whose lowest point is 5 cm below `level` \[m\].
 fn lift(terrain: Terrain, level: f64) -> f64 {
     let terrain = terrain.with_unloading(Unloading::Plastic { contact_distance: 1e-9 }).unwrap();
-    let foot =
-        Foot { body: 0, wheels: vec![Wheel::cylinder(Vec3::zeros(), 0.3, 0.2)], belts: Vec::new() };
+    let foot = Foot { body: 0, wheels: vec![Wheel::cylinder(Vec3::zeros(), 0.3, 0.2)], belts: Vec::new() };
     let pose = Pose::translation(0.0, 0.0, level + 0.25);
     let imprint = foot.imprint(&terrain, &pose, 0.0, PartialLoad::Proportional);
-    let integration =
-        Integration { sub_triangles: SubTriangles::new(4), partial: PartialLoad::Proportional };
+    let integration = Integration { sub_triangles: SubTriangles::new(4), partial: PartialLoad::Proportional };
     imprint.load(&terrain, &Pose::identity(), &integration, |_| ()).wrench.force.z
 }
 
@@ -124,7 +122,8 @@ fn every_law_gives_its_published_form() {
     let bekker =
         Bekker { cohesive_modulus: 10e3, frictional_modulus: 900e3, exponent: 2.0, plate_width: 0.1 };
     close(at(PressureLaw::Bekker(bekker)), 1e6 * 0.0025);
-    let small = MeirionGriffithSpenko { modulus: 4e6, exponent: 2.0, diameter_exponent: -0.5, diameter: 0.25 };
+    let small =
+        MeirionGriffithSpenko { modulus: 4e6, exponent: 2.0, diameter_exponent: -0.5, diameter: 0.25 };
     close(at(PressureLaw::MeirionGriffithSpenko(small)), 4e6 * 0.0025 * 2.0);
 }
 
