@@ -112,11 +112,13 @@ impl FootImprint {
         let mut load =
             FootLoad { wrench: Wrench::default(), stiffness: Matrix6::zeros(), deepest: 0.0, n_polygons: 0 };
         for layer in 0..self.layers.len() {
-            let (nodes, is_any) = self.nodes(layer, terrain, motion, integration.partial);
-            if is_any {
+            let (nodes, deepest) = self.nodes(layer, terrain, motion, integration.partial);
+            if let Some(deepest) = deepest {
+                load.deepest = load.deepest.max(deepest);
                 self.load_layer(layer, &nodes, terrain, integration, &mut load, &mut listen);
             }
         }
+        load.stiffness.fill_lower_triangle_with_upper_triangle();
         load
     }
 
@@ -137,14 +139,14 @@ impl FootImprint {
         }
     }
 
-    /// F1, F2: sinkage, height and share of every node of a layer.
+    /// F1, F2: sinkage, height and share of every node of a layer, and the deepest sinkage if the gear touches the ground at all.
     fn nodes(
         &self,
         layer: usize,
         terrain: &Terrain,
         motion: &Pose,
         partial: PartialLoad,
-    ) -> (Vec<Node>, bool) {
+    ) -> (Vec<Node>, Option<f64>) {
         let imprint = &self.layers[layer];
         let turn: Matrix3<f64> = motion.rotation.to_rotation_matrix().matrix() - Matrix3::identity();
         let shift = motion.translation.vector;
@@ -152,7 +154,7 @@ impl FootImprint {
         let n_grid = terrain.grid().n_x();
         let original = terrain.grid().heights();
         let mut nodes = vec![Node::default(); imprint.nodes.len()];
-        let mut is_any = false;
+        let mut deepest = None;
         for j in 0..imprint.n_y {
             let row = (imprint.j_0 + j) * n_grid + imprint.i_0;
             for i in 0..imprint.n_x {
@@ -180,11 +182,14 @@ impl FootImprint {
                     share = if is_loaded { share.round() } else { 0.0 };
                     h = h.min(ground);
                 }
-                is_any |= h < ground;
+                if h < ground {
+                    let is_soil = share > 0.0 && !terrain.is_fixed(node);
+                    deepest = Some(deepest.unwrap_or(0.0_f64).max(if is_soil { z_0 - h } else { 0.0 }));
+                }
                 nodes[n] = Node { z: z_0 - h, height: h, share, depth: ground - h };
             }
         }
-        (nodes, is_any)
+        (nodes, deepest)
     }
 
     /// Share of a node's cell that the layers below leave free.
@@ -200,8 +205,41 @@ impl FootImprint {
         free
     }
 
-    /// F3 to F5: integrates over all polygons of a layer.
+    /// F3 to F5: integrates over all polygons of a layer, with the fastest instructions of the machine, none of them fused: the
+    /// same bits everywhere.
     fn load_layer(
+        &self,
+        layer: usize,
+        nodes: &[Node],
+        terrain: &Terrain,
+        integration: &Integration,
+        load: &mut FootLoad,
+        listen: &mut impl FnMut(&LoadedPolygon),
+    ) {
+        #[cfg(target_arch = "x86_64")]
+        {
+            #[target_feature(enable = "avx2")]
+            fn wide(
+                foot: &FootImprint,
+                layer: usize,
+                nodes: &[Node],
+                terrain: &Terrain,
+                integration: &Integration,
+                load: &mut FootLoad,
+                listen: &mut impl FnMut(&LoadedPolygon),
+            ) {
+                foot.polygons(layer, nodes, terrain, integration, load, listen);
+            }
+            if is_x86_feature_detected!("avx2") {
+                // SAFETY: the instructions were just found on this machine.
+                return unsafe { wide(self, layer, nodes, terrain, integration, load, listen) };
+            }
+        }
+        self.polygons(layer, nodes, terrain, integration, load, listen);
+    }
+
+    #[inline(always)]
+    fn polygons(
         &self,
         layer: usize,
         nodes: &[Node],
@@ -215,30 +253,26 @@ impl FootImprint {
         for j in 0..imprint.n_y.saturating_sub(1) {
             for i in 0..n_x.saturating_sub(1) {
                 let n = j * n_x + i;
-                let cell = [n, n + 1, n + n_x, n + n_x + 1];
-                if is_free(&cell.map(|c| nodes[c])) {
+                let cell = [nodes[n], nodes[n + 1], nodes[n + n_x], nodes[n + n_x + 1]];
+                if is_free(&cell) {
                     continue;
                 }
                 // Diagonals alternate so that no direction is preferred.
                 let (i_g, j_g) = (imprint.i_0 + i, imprint.j_0 + j);
-                let triangles = if (i_g + j_g) % 2 == 0 {
+                let triangles: [[(usize, usize); 3]; 2] = if (i_g + j_g) % 2 == 0 {
                     [[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]]
                 } else {
                     [[(0, 0), (1, 0), (0, 1)], [(1, 0), (1, 1), (0, 1)]]
                 };
-                for corners in triangles {
-                    let at = corners.map(|(a, b)| nodes[n + b * n_x + a]);
+                for corners in &triangles {
+                    let [p, q, r] = *corners;
+                    let at = [cell[p.0 + 2 * p.1], cell[q.0 + 2 * q.1], cell[r.0 + 2 * r.1]];
                     if is_free(&at) {
                         continue;
                     }
-                    let on_grid = corners.map(|(a, b)| (j_g + b) * n_grid + i_g + a);
-                    let answer = answer(terrain, &on_grid, &at, integration);
-                    self.collect(layer, (i, j), &corners, &at, answer, load, listen);
-                    let soil = at
-                        .iter()
-                        .zip(&on_grid)
-                        .filter(|(c, node)| c.share > 0.0 && c.depth > 0.0 && !terrain.is_fixed(**node));
-                    load.deepest = soil.map(|(c, _)| c.z).fold(load.deepest, f64::max);
+                    let on_grid = |(a, b): (usize, usize)| (j_g + b) * n_grid + i_g + a;
+                    let answer = answer(terrain, &[on_grid(p), on_grid(q), on_grid(r)], &at, integration);
+                    self.collect(layer, (i, j), corners, &at, answer, load, listen);
                 }
             }
         }
@@ -262,25 +296,39 @@ impl FootImprint {
         let imprint = &self.layers[layer];
         let d = imprint.spacing;
         let area = d * d / 2.0;
-        let points = [0, 1, 2].map(|k| {
+        let point = |k: usize| {
             let [x, y] = imprint.position(i + corners[k].0, j + corners[k].1);
             Vec3::new(x, y, at[k].height)
-        });
+        };
+        let points = [point(0), point(1), point(2)];
         let normal = (points[1] - points[0]).cross(&(points[2] - points[0])) / (d * d);
         let force = normal * (answer.pressure * area); // P2 Eq. (7)
         // P2 Eq. (8); a polygon that just touches answers from its middle.
-        let weights =
-            if answer.pressure > 0.0 { answer.moment.map(|m| m / answer.pressure) } else { [1.0 / 3.0; 3] };
+        let per_pressure = 1.0 / answer.pressure;
+        let [m_0, m_1, m_2] = answer.moment;
+        let weights = if answer.pressure > 0.0 {
+            [m_0 * per_pressure, m_1 * per_pressure, m_2 * per_pressure]
+        } else {
+            [1.0 / 3.0; 3]
+        };
         let position = points[0] * weights[0] + points[1] * weights[1] + points[2] * weights[2];
         let arm = position - self.reference;
         load.wrench += Wrench { force, moment: arm.cross(&force) };
         let stiffness = area * answer.stiffness.max(0.0);
         let turned = arm.cross(&normal);
         let w = Vector6::new(normal.x, normal.y, normal.z, turned.x, turned.y, turned.z);
-        load.stiffness.ger(stiffness, &w, &w, 1.0);
+        for (column, &w_j) in w.iter().enumerate() {
+            let s_j = stiffness * w_j;
+            for row in 0..=column {
+                load.stiffness[(row, column)] += s_j * w[row];
+            }
+        }
         load.n_polygons += 1;
-        let largest = (0..3).max_by(|&a, &b| at[a].share.total_cmp(&at[b].share)).unwrap_or(0);
-        let owner = imprint.nodes[(j + corners[largest].1) * imprint.n_x + i + corners[largest].0].owner;
+        let owners =
+            [0, 1, 2].map(|k| imprint.nodes[(j + corners[k].1) * imprint.n_x + i + corners[k].0].owner);
+        let held =
+            |k: usize| -> f64 { (0..3).filter(|&l| owners[l] == owners[k]).map(|l| at[l].share).sum() };
+        let owner = owners[(1..3).fold(0, |best, k| if held(k) > held(best) { k } else { best })];
         let share = at.iter().map(|c| c.share).sum::<f64>() / 3.0;
         listen(&LoadedPolygon {
             layer,
@@ -298,7 +346,11 @@ impl FootImprint {
 /// F3, F4: the ground's answer under one polygon.
 #[inline(always)]
 fn answer(terrain: &Terrain, on_grid: &[usize; 3], at: &[Node; 3], integration: &Integration) -> PolygonLoad {
-    let corners = Corners { z: at.map(|c| c.z), share: at.map(|c| c.share), depth: at.map(|c| c.depth) };
+    let corners = Corners {
+        z: [at[0].z, at[1].z, at[2].z],
+        share: [at[0].share, at[1].share, at[2].share],
+        depth: [at[0].depth, at[1].depth, at[2].depth],
+    };
     let (sub, partial) = (&integration.sub_triangles, integration.partial);
     if on_grid.iter().all(|&node| terrain.is_fixed(node)) {
         return integrate(sub, Stiff(Terrain::FIXED_STIFFNESS), &corners, partial, 0.0); // P2 Eq. (4)

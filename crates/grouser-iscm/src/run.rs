@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::equilibrium::{Equilibrium, Frozen, NoEquilibrium, SearchSettings, equilibrium, start_position};
 use crate::machine::Machine;
-use crate::mechanism::{Configuration, GRAVITY, Joint};
+use crate::mechanism::{Configuration, Joint};
 use crate::rolling_resistance::{WheelResistance, foot_resistance};
 use crate::route::Route;
 use crate::terrain::Terrain;
@@ -138,13 +138,22 @@ impl RunState {
     pub fn step(&mut self, machine: &Machine, settings: &RunSettings) -> Result<StepResult, RunError> {
         let before = self.distance(settings);
         let n = settings.intermediate_steps + 1;
+        let mut n_evaluations = 0;
+        let mut last: Option<Vec<f64>> = None;
         for k in 1..n {
             let distance = before + settings.run_step * k as f64 / n as f64;
-            self.intermediate(machine, settings, distance)?; // R2, R3
+            // The machine goes on as it went in the step before: a good place to search from.
+            let here = machine.mechanism.dofs(&self.configuration);
+            if let Some(last) = last.replace(here.clone()) {
+                let ahead: Vec<f64> = here.iter().zip(&last).map(|(a, b)| 2.0 * a - b).collect();
+                machine.mechanism.set_dofs(&mut self.configuration, &ahead);
+            }
+            n_evaluations += self.intermediate(machine, settings, distance)?; // R2, R3
         }
         let distance = before + settings.run_step;
         let rest = self.rest(machine, settings, distance, &settings.search)?; // R4
-        let result = self.measure(machine, distance, &rest); // R5
+        let mut result = self.measure(machine, distance, &rest); // R5
+        result.n_evaluations += n_evaluations;
         self.configuration = rest.configuration.clone();
         self.wheel_centres = wheel_centres(machine, &rest.frozen);
         self.n_limited += usize::from(rest.last_change > settings.search.position_tolerance);
@@ -159,21 +168,19 @@ impl RunState {
         machine: &Machine,
         settings: &RunSettings,
         distance: f64,
-    ) -> Result<(), RunError> {
+    ) -> Result<usize, RunError> {
         let mut at = self.configuration.clone();
         (at.position, at.heading) = settings.route.at(distance);
         steer(machine, &settings.route, distance, &mut at);
         let failed = |reason| RunError::NoEquilibrium { distance, reason };
         let frozen = Frozen::new(machine, &self.terrain, &at, distance, settings.search.integration())
             .map_err(failed)?;
-        let settled = frozen.settle(machine, &self.terrain, 1e-4);
-        let weight = machine.mechanism.mass() * GRAVITY;
-        let lifted = frozen.lift_below(machine, &self.terrain, settled, weight);
+        let (lifted, n_evaluations) = frozen.settle_and_lift(machine, &self.terrain, 1e-4);
         for (foot, imprint) in frozen.imprints.iter().enumerate() {
             imprint.stamp(&mut self.terrain, &frozen.motion_of(foot, machine, &lifted));
         }
         self.configuration = lifted;
-        Ok(())
+        Ok(n_evaluations)
     }
 
     fn rest(

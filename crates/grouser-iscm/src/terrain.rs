@@ -18,9 +18,9 @@ pub enum GroundKind {
 /// What the soil does when the load goes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Unloading {
-    /// The rut stays (P2). A loaded point takes up its full pressure over this distance of renewed contact \[m\].
+    /// The rut stays (P2), but for the distance over which contact is lost and builds up again.
     Plastic {
-        /// Distance over which renewed contact builds up \[m\].
+        /// Rise of the ground when the load goes, and way over which renewed contact takes up its full pressure \[m\].
         contact_distance: f64,
     },
     /// The soil springs back and is reloaded along a straight line of this stiffness \[Pa/m\].
@@ -32,7 +32,7 @@ pub enum Unloading {
 
 impl Default for Unloading {
     fn default() -> Self {
-        Self::Plastic { contact_distance: 1e-3 }
+        Self::Plastic { contact_distance: 2.5e-4 }
     }
 }
 
@@ -210,7 +210,8 @@ impl Terrain {
         self.deepest[node] = self.deepest[node].max(sinkage);
         self.loadings[node] += 1;
         self.sinkage[node] = match self.unloading {
-            Unloading::Plastic { .. } => sinkage,
+            // The ground follows the gear up again over the contact distance, so that a machine that stands still stays carried.
+            Unloading::Plastic { contact_distance } => self.sinkage[node].max(sinkage - contact_distance),
             Unloading::Elastic { stiffness } => {
                 let resolution = self.field.resolution();
                 let deepest = self.deepest[node];
@@ -239,7 +240,8 @@ mod tests {
         let mut plastic = flat();
         plastic.stamp(12, -0.04);
         plastic.stamp(12, -0.02);
-        assert_eq!((plastic.sinkage()[12], plastic.loadings()[12]), (0.04, 1));
+        assert!((plastic.sinkage()[12] - (0.04 - 2.5e-4)).abs() < 1e-12 && plastic.deepest()[12] == 0.04);
+        assert_eq!(plastic.loadings()[12], 1);
         let mut elastic = flat().with_unloading(Unloading::Elastic { stiffness: 4e6 }).unwrap();
         elastic.stamp(12, -0.04);
         assert!((elastic.sinkage()[12] - 0.03).abs() < 1e-12 && elastic.deepest()[12] == 0.04);

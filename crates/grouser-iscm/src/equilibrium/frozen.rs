@@ -82,31 +82,16 @@ impl Frozen {
             .collect()
     }
 
-    /// E2 alone and in a few steps: near the balance, without drawing again.
-    pub fn settle(&self, machine: &Machine, terrain: &Terrain, tolerance: f64) -> Configuration {
-        let (q, _, _) = newton::solve(self, machine, terrain, tolerance, 3);
-        self.moved(machine, &q)
-    }
-
-    /// Lifts the machine from `at` until the ground carries less than `weight` \[N\] (P2 §2.4).
-    pub fn lift_below(
+    /// A loose balance without drawing again, in which the ground carries a little less than the machine's weight (P2 §2.4); also
+    /// returns the evaluations spent.
+    pub fn settle_and_lift(
         &self,
         machine: &Machine,
         terrain: &Terrain,
-        at: Configuration,
-        weight: f64,
-    ) -> Configuration {
-        let mut at = at;
-        for _ in 0..40 {
-            let balance = self.balance(machine, terrain, &machine.mechanism.dofs(&at));
-            let surplus = balance.forces[0];
-            if surplus < 0.0 {
-                break;
-            }
-            // A thousandth of a micrometre more than the stiffness asks for.
-            at.height += 1e-9 + (surplus + 1e-9 * weight) / balance.stiffness[(0, 0)].max(1e-3 * weight);
-        }
-        at
+        tolerance: f64,
+    ) -> (Configuration, usize) {
+        let (q, n_evaluations) = newton::settle_and_lift(self, machine, terrain, tolerance);
+        (self.moved(machine, &q), n_evaluations)
     }
 
     /// Motion of a foot's body from where its imprint was drawn to a configuration nearby.

@@ -179,10 +179,15 @@ pub fn equilibrium(
     let mut changes: Vec<f64> = Vec::new();
     for n_drawings in 1..=settings.max_drawings {
         let frozen = Frozen::new(machine, terrain, &at, travel, integration.clone())?; // E1
+        // Early drawings are poor: no use in solving them to the end.
         let tolerance = settings.position_tolerance;
+        let inner = (0.1 * tolerance).max(0.01 * change.min(1e-3));
         let (q, stops, n) = match settings.solver {
-            Solver::Fast => newton::solve(&frozen, machine, terrain, 0.1 * tolerance, 60), // E2
-            Solver::Nested => nested::solve(&frozen, machine, terrain, 0.1 * tolerance),
+            Solver::Fast => {
+                let settled = newton::solve(&frozen, machine, terrain, inner, 60); // E2
+                (settled.q, settled.stops, settled.n_evaluations)
+            }
+            Solver::Nested => nested::solve(&frozen, machine, terrain, inner),
         };
         n_evaluations += n;
         let before = machine.mechanism.dofs(&at);
@@ -206,7 +211,7 @@ pub fn equilibrium(
         let is_stalled = changes.len() >= 12
             && change < 1e-4
             && changes[changes.len() - 6..].iter().all(|c| *c > 0.3 * changes[changes.len() - 7]);
-        if change <= tolerance || is_stalled {
+        if (change <= tolerance && inner <= tolerance) || is_stalled {
             let settled = Frozen::new(machine, terrain, &at, travel, integration.clone())?;
             settled.check(machine, terrain)?;
             return Ok(Equilibrium {

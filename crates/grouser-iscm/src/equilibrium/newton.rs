@@ -11,6 +11,18 @@ use crate::terrain::Terrain;
 /// Largest motion while imprints stay as drawn \[m, rad\].
 const REACH: f64 = 0.1;
 
+/// Where the search ended.
+pub(super) struct Settled {
+    /// Degrees of freedom.
+    pub q: Vec<f64>,
+    /// Those that rest on a stop.
+    pub stops: Vec<usize>,
+    /// Evaluations of the ground's forces.
+    pub n_evaluations: usize,
+    /// Forces and stiffness at `q`.
+    pub balance: Balance,
+}
+
 /// E2: degrees of freedom in balance, those at a stop, and the evaluations spent.
 pub(super) fn solve(
     frozen: &Frozen,
@@ -18,7 +30,7 @@ pub(super) fn solve(
     terrain: &Terrain,
     tolerance: f64,
     max_iterations: usize,
-) -> (Vec<f64>, Vec<usize>, usize) {
+) -> Settled {
     let mechanism = &machine.mechanism;
     let n = mechanism.n_dofs();
     let start = mechanism.dofs(&frozen.at);
@@ -80,7 +92,56 @@ pub(super) fn solve(
             break;
         }
     }
-    (q, stops, n_evaluations)
+    Settled { q, stops, n_evaluations, balance: here }
+}
+
+/// Share of the weight that the ground carries less than the machine weighs after a loose search.
+const LIFT: f64 = 1e-3;
+
+/// A balance near enough to leave a footprint, lifted until the ground carries less than the weight; and the evaluations spent.
+pub(super) fn settle_and_lift(
+    frozen: &Frozen,
+    machine: &Machine,
+    terrain: &Terrain,
+    tolerance: f64,
+) -> (Vec<f64>, usize) {
+    let mechanism = &machine.mechanism;
+    let weight = mechanism.mass() * GRAVITY;
+    let mut q = mechanism.dofs(&frozen.at);
+    let mut n_evaluations = 0;
+    let mut step = f64::INFINITY;
+    for _ in 0..6 {
+        let mut here = frozen.balance(machine, terrain, &q);
+        n_evaluations += 1;
+        // What is left after a step of Newton's method is a fraction of it.
+        if step <= 3.0 * tolerance && here.forces[0] < 0.0 {
+            return (q, n_evaluations);
+        }
+        let stops = pressed_stops(machine, &q, &here.forces);
+        here.forces[0] += LIFT * weight;
+        let d = direction(&here, &stops, weight);
+        step = d.iter().fold(0.0, |a, b| a.max(b.abs()));
+        if step > REACH / 2.0 {
+            break;
+        }
+        for k in 0..q.len() {
+            let [low, high] = mechanism.limits(k);
+            q[k] = (q[k] + d[k]).clamp(low, high);
+        }
+    }
+    // Not near enough: the careful search, then straight up.
+    let settled = solve(frozen, machine, terrain, tolerance, 10);
+    let (mut q, mut here) = (settled.q, settled.balance);
+    n_evaluations += settled.n_evaluations;
+    for _ in 0..40 {
+        if here.forces[0] < 0.0 {
+            break;
+        }
+        q[0] += (here.forces[0] + LIFT * weight) / here.stiffness[(0, 0)].max(1e-3 * weight);
+        here = frozen.balance(machine, terrain, &q);
+        n_evaluations += 1;
+    }
+    (q, n_evaluations)
 }
 
 /// Degrees of freedom that lie on a stop and are pushed against it.

@@ -2,7 +2,8 @@
 
 use super::Row;
 use crate::polygon::{SubTriangles, polygon_force};
-use crate::pressure::{Polynomial, PressureArray, PressureLaw, weights};
+use crate::pressure::{Polynomial, PressureArray, PressureLaw, SpatialLaws, read_located_laws};
+use grouser_geometry::HeightGrid;
 
 /// ∫ over the triangle part where `inside` of Σ c_m z^m by the exact formula for monomials over sub-triangles of corners.
 fn exact_over(corners: [f64; 3], area: f64, coefficients: &[f64]) -> f64 {
@@ -88,33 +89,40 @@ pub fn polygon_force_partial() -> Vec<Row> {
     all
 }
 
-/// Weights of P2 Fig. 2 at single points, recomputed independently from Eq. (2).
-pub fn spatial_weights() -> Vec<Row> {
-    let case = "P2 test 24: spatial weights";
-    let positions = [[1.0, 1.0], [1.0, 2.0], [1.0, 3.0]];
-    let slopes = [10.0, 1.0, 8.5];
+/// The three relationships of P2 Fig. 2 read from text, blended on a grid with two widths, read back at its nodes.
+pub fn relationships_from_a_file() -> Vec<Row> {
+    let case = "P2 test 24: relationships from a data file";
+    let text = "# name x y sinkage pressure [m, m, m, Pa]\nhard 1 1 0.1 1e6\nhard 1 1 0.4 4e6\nsoft, 1, 2, 0.1, 1e5\n\
+                soft, 1, 2, 0.4, 4e5\nfirm 1 3 0.1 8.5e5\nfirm 1 3 0.4 3.4e6\n";
     // (c, x, y, averaged slope [MPa/m]) by P2 Eqs. (2), (3) in another program.
     let references = [
+        (0.5, 1.0, 1.0, 10.0),
+        (0.5, 1.0, 2.0, 1.0),
         (0.5, 1.0, 1.5, 5.997_799_621),
         (0.5, 1.25, 1.5, 6.070_200_764),
+        (0.5, 1.25, 2.0, 2.737_941_590),
         (0.5, 1.75, 1.0, 6.905_461_778),
         (0.5, 2.0, 4.0, 6.512_278_456),
+        (1.5, 1.0, 1.5, 5.692_777_171),
+        (1.5, 1.25, 2.0, 1.956_660_035),
+        (1.5, 1.75, 2.0, 4.669_484_350),
+        (1.5, 0.5, 0.5, 8.246_918_773),
+        (1.5, 2.0, 4.0, 6.740_802_178),
+        // Beyond 5 c of all three every weight is 1.
+        (0.1, 2.0, 4.0, 6.5),
     ];
-    references
-        .iter()
-        .map(|&(c, x, y, reference)| {
-            let w = weights(&positions, [x, y], c);
-            let computed = w.iter().zip(slopes).map(|(w, k)| w * k).sum::<f64>() / w.iter().sum::<f64>();
-            let quantity = format!("slope at ({x}, {y}), c = {c} m");
-            Row {
-                case,
-                quantity,
-                computed,
-                reference,
-                tolerance: 1e-8,
-                unit: "MPa/m",
-                source: "P2 Eqs. (2), (3), independent evaluation",
-            }
-        })
-        .collect()
+    let row = |&(c, x, y, reference): &(f64, f64, f64, f64)| {
+        let slope = || -> Option<f64> {
+            let laws = read_located_laws(text.as_bytes()).ok()?;
+            let grid = HeightGrid::covering([0.0, 0.0], [2.0, 4.0], 0.25, |_, _| 0.0).ok()?;
+            let field = SpatialLaws { laws, standard_deviation: c }.field(&grid, 0.005, 0.4).ok()?;
+            let node = (y / 0.25) as usize * grid.n_x() + (x / 0.25) as usize;
+            let pressures = field.of_node(node);
+            Some(pressures[60] / (60.0 * field.resolution()) / 1e6)
+        };
+        let quantity = format!("slope at ({x}, {y}) m, c = {c} m");
+        let source = "P2 Eqs. (2), (3), independent evaluation";
+        Row::new(case, quantity, slope().unwrap_or(f64::NAN), reference, 1e-8, "MPa/m", source)
+    };
+    references.iter().map(row).collect()
 }

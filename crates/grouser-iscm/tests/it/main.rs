@@ -3,6 +3,7 @@
 mod ground_and_laws;
 mod machine_traction;
 mod multi_pass;
+mod random_starts;
 mod restart;
 mod single_wheel;
 mod verification_cases;
