@@ -4,6 +4,7 @@
 mod atomic;
 pub mod chart;
 pub mod checkpoint;
+pub mod heat_map;
 mod pvd;
 pub mod summary;
 mod table;

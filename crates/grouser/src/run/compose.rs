@@ -1,6 +1,7 @@
 //! Which experiment a scene is: the one place that looks at soil, tool and motion together.
 
 use super::driver::Driver;
+use super::driving::Driving;
 use super::on_bed::OnBed;
 use super::press::Pressing;
 use super::slip_sweep::SlipSweep;
@@ -24,6 +25,7 @@ pub fn run(scenario: &Scenario, options: &Options, progress: &mut dyn Progress) 
             with_law(&scenario.dials, OnGrains { driver, soil }).map_err(SetupError::from)?
         }
         Soil::PlateTested(_) => driver.drive(|_| SlipSweep::begin(scenario)),
+        Soil::PressureSinkage(_) => driver.drive(|_| Driving::begin(scenario)),
     }
 }
 

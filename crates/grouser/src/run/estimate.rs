@@ -29,6 +29,7 @@ pub fn estimate(scenario: &Scenario) -> Result<Estimate, SetupError> {
     }
     match &scenario.soil {
         Soil::Grains(soil) => on_grains(scenario, soil),
+        Soil::PressureSinkage(_) => Ok(super::driving::estimate(scenario)),
         Soil::PlateTested(_) => Ok(super::slip_sweep::estimate(scenario)),
     }
 }

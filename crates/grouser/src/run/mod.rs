@@ -5,6 +5,8 @@ mod cache;
 mod clock;
 mod compose;
 mod driver;
+mod driving;
+mod driving_outcome;
 mod ended;
 mod estimate;
 mod experiment;
@@ -26,6 +28,7 @@ mod study;
 mod study_outcome;
 mod time_step;
 mod tool_ledger;
+mod vehicle_frames;
 
 pub use bed::SETTLED_SOLID_FRACTION;
 pub use compose::run;
@@ -62,6 +65,9 @@ pub enum SetupError {
     /// The motion of a tool.
     #[error(transparent)]
     Rigid(#[from] grouser_rigid::RigidError),
+    /// Soft ground, a vehicle on it, or its start.
+    #[error("{0}")]
+    Vehicle(String),
     /// The file of a tool's surface.
     #[error("{0}")]
     Mesh(String),

@@ -1,6 +1,6 @@
 //! How tools move.
 
-use super::Slips;
+use super::{Route, Slips};
 use serde::{Deserialize, Serialize};
 
 /// Kinds of motion.
@@ -10,6 +10,8 @@ pub enum Motion {
     Press(Press),
     /// Rolling at given slips, each at steady state.
     Slips(Slips),
+    /// Along a route over soft ground.
+    Route(Route),
 }
 
 impl Motion {
@@ -18,6 +20,7 @@ impl Motion {
         match self {
             Motion::Press(press) => press.speed_m_s,
             Motion::Slips(_) => 0.0,
+            Motion::Route(route) => route.shown_speed_m_s,
         }
     }
 
@@ -25,6 +28,7 @@ impl Motion {
     pub fn duration(&self) -> f64 {
         match self {
             Motion::Press(press) => (press.gap_m + press.depth_m) / press.speed_m_s,
+            Motion::Route(route) => route.length() / route.shown_speed_m_s,
             Motion::Slips(_) => 0.0,
         }
     }

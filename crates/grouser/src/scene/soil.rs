@@ -1,6 +1,6 @@
-//! The ground: grains in a box, or a law known from plate tests.
+//! The ground: grains in a box, a law known from plate tests, or a height grid whose pressure rises with sinkage.
 
-use super::PlateTested;
+use super::{PlateTested, SoftGround};
 use serde::{Deserialize, Serialize};
 
 /// Kinds of ground.
@@ -10,6 +10,8 @@ pub enum Soil {
     Grains(Grains),
     /// Flat ground known from plate tests alone.
     PlateTested(PlateTested),
+    /// A height grid that presses back the harder the deeper something sinks.
+    PressureSinkage(SoftGround),
 }
 
 impl Soil {
@@ -17,7 +19,7 @@ impl Soil {
     pub fn grains(&self) -> Option<&Grains> {
         match self {
             Soil::Grains(grains) => Some(grains),
-            Soil::PlateTested(_) => None,
+            Soil::PlateTested(_) | Soil::PressureSinkage(_) => None,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What meets the ground.
 
-use super::{Mesh, RigidWheel};
+use super::{Mesh, RigidWheel, Vehicle};
 use serde::{Deserialize, Serialize};
 
 /// Kinds of tools.
@@ -12,6 +12,8 @@ pub enum Tool {
     Mesh(Mesh),
     /// A single rigid wheel.
     RigidWheel(RigidWheel),
+    /// A machine on wheels and tracks.
+    Vehicle(Vehicle),
 }
 
 impl Tool {
@@ -20,7 +22,7 @@ impl Tool {
         match self {
             Tool::Plates(plates) => &plates.material,
             Tool::Mesh(mesh) => &mesh.material,
-            Tool::RigidWheel(_) => "",
+            Tool::RigidWheel(_) | Tool::Vehicle(_) => "",
         }
     }
 }

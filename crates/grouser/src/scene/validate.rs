@@ -1,6 +1,7 @@
 //! Physics that a scene must obey, refused before anything is computed.
 
 mod dials;
+mod drive;
 mod grains;
 mod press;
 mod slips;
@@ -51,10 +52,13 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
             (Soil::PlateTested(soil), Tool::RigidWheel(wheel), Motion::Slips(slips)) => {
                 slips::validate(&mut check, scenario, soil, wheel, slips);
             }
+            (Soil::PressureSinkage(ground), Tool::Vehicle(vehicle), Motion::Route(route)) => {
+                drive::validate(&mut check, ground, vehicle, route);
+            }
             _ => check.fail(
                 "motion",
                 "no experiment puts this soil, tool and motion together",
-                "Grains with Plates or Mesh and Press; PlateTested with RigidWheel and Slips",
+                "Grains with Plates or Mesh and Press; PlateTested with RigidWheel and Slips; PressureSinkage with Vehicle and Route",
                 "a tool or a motion of another kind of scene",
             ),
         },
@@ -76,6 +80,14 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
                     "soil",
                     "ground known from plate tests has nothing to show alone",
                     "`tool: RigidWheel(…)` and `motion: Slips(…)`",
+                    "tool and motion were deleted or commented out",
+                );
+            }
+            if let Soil::PressureSinkage(_) = &scenario.soil {
+                check.fail(
+                    "soil",
+                    "soft ground has nothing to show alone",
+                    "`tool: Vehicle(…)` and `motion: Route(…)`",
                     "tool and motion were deleted or commented out",
                 );
             }
