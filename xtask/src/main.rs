@@ -6,6 +6,7 @@ mod peers;
 mod process;
 mod test;
 mod tidy;
+mod vtk;
 
 use std::process::ExitCode;
 
@@ -20,6 +21,7 @@ Everything done to this repository:
   cargo xtask tidy              the repository's rules alone
   cargo xtask bench [GROUP] …   criterion benches and throughput figures; `--json FILE` writes them all as one array
   cargo xtask peers [--json FILE]  the same beds in LAMMPS, LIGGGHTS and Yade where installed: speed and agreement
+  cargo xtask vtk DIR           every VTK frame of a run read back by VTK's own readers (needs Python with pyvista)
   cargo xtask docs              the crates' documentation, warnings being errors
 ";
 
@@ -36,6 +38,7 @@ fn main() -> ExitCode {
         "bench" => bench::bench(rest),
         "peers" => peers::peers(rest),
         "docs" => test::docs(),
+        "vtk" => vtk::read_back(rest),
         "help" | "--help" | "-h" => {
             print!("{HELP}");
             true
