@@ -54,7 +54,7 @@ impl Default for SearchSettings {
             partial: PartialLoad::Proportional,
             solver: Solver::Fast,
             position_tolerance: 1e-7,
-            max_drawings: 40,
+            max_drawings: 80,
         }
     }
 }
@@ -164,6 +164,11 @@ pub enum NoEquilibrium {
 /// Pitch or roll beyond which a machine counts as turned over \[rad\].
 const TURNED_OVER: f64 = 1.0;
 
+/// Drawings whose whole way is gone, as most searches end within them.
+const TRUSTED_DRAWINGS: usize = 8;
+/// Least share of the way to a drawing's balance that is gone.
+const SMALLEST_SHARE: f64 = 1.0 / 64.0;
+
 /// Finds the equilibrium near `from`; `travel` \[m\] is how far the wheels have rolled.
 pub fn equilibrium(
     machine: &Machine,
@@ -177,6 +182,8 @@ pub fn equilibrium(
     let mut n_evaluations = 0;
     let mut change = f64::INFINITY;
     let mut changes: Vec<f64> = Vec::new();
+    // Share of the way to the drawing's balance that is gone: less where drawings answer each other to and fro.
+    let mut share = 1.0_f64;
     for n_drawings in 1..=settings.max_drawings {
         let frozen = Frozen::new(machine, terrain, &at, travel, integration.clone())?; // E1
         // Early drawings are poor: no use in solving them to the end.
@@ -191,8 +198,13 @@ pub fn equilibrium(
         };
         n_evaluations += n;
         let before = machine.mechanism.dofs(&at);
-        machine.mechanism.set_dofs(&mut at, &q);
+        let change_before = change;
         change = before.iter().zip(&q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        if n_drawings > TRUSTED_DRAWINGS && change > 0.5 * change_before {
+            share = (0.5 * share).max(SMALLEST_SHARE);
+        }
+        let gone: Vec<f64> = before.iter().zip(&q).map(|(a, b)| a + share * (b - a)).collect();
+        machine.mechanism.set_dofs(&mut at, &gone);
         let at_stop: Vec<String> = stops.iter().map(|&d| machine.mechanism.dof_name(d).to_string()).collect();
         for (axis, angle) in [("pitch", at.pitch), ("roll", at.roll)] {
             if angle.abs() > TURNED_OVER {
