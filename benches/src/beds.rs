@@ -49,7 +49,7 @@ impl BedOf {
         let layer =
             Layer { radii: self.radii, n_grains: self.n_grains, density: SAND.density_kg_m3, material: 0 };
         let mut bed = self.of(random_packing::<F64>(&self.domain(0.5), &[layer], 1)?)?;
-        let criterion = SettleCriterion { kinetic_energy_ratio: 1e-6, longest_s: 10.0 };
+        let criterion = SettleCriterion { kinetic_energy_ratio: 1e-5, longest_s: 1.5 };
         let mut settling = Settling::new(criterion, self.time_step());
         let begun = Instant::now();
         let end = loop {
@@ -73,6 +73,28 @@ impl BedOf {
         let rows: Vec<_> = rows.into_iter().map(|(_, row)| row).collect();
         std::fs::create_dir_all(&folder)?;
         std::fs::write(path, serde_json::to_vec(&rows)?)?;
+        Ok(bed)
+    }
+
+    /// The bed at rest, laid out `tiles` times along x and along y.
+    ///
+    /// # Errors
+    /// As [`BedOf::settled`].
+    pub fn tiled(&self, tiles: usize) -> Result<Bed<Law>, Box<dyn Error>> {
+        let one = self.settled()?;
+        let mut spheres = Vec::new();
+        for tile in 0..tiles * tiles {
+            let [column, row] = [tile % tiles, tile / tiles].map(|index| index as f64);
+            for sphere in &one.grains().spheres {
+                let [x, y, z] = sphere.position.to_array();
+                let place = Vec3::new(x + column * self.width[0], y + row * self.width[1], z);
+                spheres.push(grain(place, sphere.radius));
+            }
+        }
+        let width = self.width.map(|length| length * tiles as f64);
+        let n_grains = spheres.len();
+        let mut bed = Self { width, n_grains, ..*self }.of(spheres)?;
+        bed.run(500, self.time_step(), |_| Ok::<(), Failure>(()))?;
         Ok(bed)
     }
 

@@ -16,6 +16,7 @@ use crate::plane::Plane;
 use crate::slab::Slab;
 use grouser_contact::{ContactLaw, Memory, Precision};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Grains below which another thread costs more in waking than it saves.
 const GRAINS_PER_THREAD: usize = 1_000;
@@ -30,16 +31,23 @@ pub(crate) fn is_shared(n_grains: usize) -> bool {
     threads_of(n_grains) > 1
 }
 
-/// Forces of all slabs, and `motion` of every grain afterwards.
+/// Forces of all slabs, and `motion` of every grain afterwards, or of the grains in `runs` of each slab alone.
 pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
     slabs: &mut [Slab<P::Real, L::Memory>],
     is_ring: bool,
     planes: &[Plane],
     input: &PassInput<P, L>,
     motion: &Motion<P::Real>,
+    runs: Option<&[Vec<Range<u32>>]>,
 ) -> Pace {
     let ranges: Vec<_> = slabs.iter().map(Slab::grains).collect();
-    let moves = |slab: usize| motion.advance(input.grains, ranges[slab % ranges.len()].clone(), input.set);
+    let moves = |slab: usize| match runs {
+        None => motion.advance(input.grains, ranges[slab % ranges.len()].clone(), input.set),
+        Some(runs) => runs[slab % ranges.len()]
+            .iter()
+            .map(|run| motion.advance(input.grains, run.clone(), input.set))
+            .fold(Pace::STILL, Pace::and),
+    };
     let n_slabs = slabs.len();
     let n_grains: usize = ranges.iter().map(ExactSizeIterator::len).sum();
     let n_threads = threads_of(n_grains);
