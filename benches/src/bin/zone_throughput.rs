@@ -22,12 +22,9 @@ struct Arguments {
     /// Copies of the bed of 20,000 grains along x and y
     #[arg(long, default_value_t = 2)]
     tiles: usize,
-    /// Reaches of the zone around the plate [m]
-    #[arg(long, value_delimiter = ',', default_value = "0.03,0.06")]
-    reaches: Vec<f64>,
-    /// Out-of-balance force at which sleepers wake [-]
-    #[arg(long, default_value_t = 0.3)]
-    imbalance: f64,
+    /// Zones: reach around the plate [m], and out-of-balance force at which sleepers wake [-]
+    #[arg(long, value_delimiter = ',', default_value = "0.03:3,0.06:3", value_parser = zone)]
+    zones: Vec<(f64, f64)>,
     /// Speed below which grains are at rest, over the plate's speed [-]
     #[arg(long, default_value_t = 0.02)]
     calm: f64,
@@ -42,6 +39,12 @@ struct Arguments {
     json: Option<PathBuf>,
 }
 
+fn zone(text: &str) -> Result<(f64, f64), String> {
+    let parts =
+        text.split_once(':').and_then(|(reach, limit)| Some((reach.parse().ok()?, limit.parse().ok()?)));
+    parts.ok_or_else(|| format!("`{text}` is not `reach:imbalance`"))
+}
+
 const SPEED: f64 = 0.1;
 const RADIUS: f64 = 0.03;
 const STEPS_PER_SAMPLE: u64 = 25;
@@ -54,7 +57,12 @@ struct Press {
     imbalance: f64,
 }
 
-fn press(mut bed: Bed<Law>, reach: Option<f64>, of: &Arguments, dt: f64) -> Result<Press, Box<dyn Error>> {
+fn press(
+    mut bed: Bed<Law>,
+    zone: Option<(f64, f64)>,
+    of: &Arguments,
+    dt: f64,
+) -> Result<Press, Box<dyn Error>> {
     let upper = bed.settings().domain.upper;
     let centre = Vec3::new(upper.x / 2.0, upper.y / 2.0, 0.0);
     let is_below = |s: &grouser_contact::Sphere| {
@@ -70,20 +78,15 @@ fn press(mut bed: Bed<Law>, reach: Option<f64>, of: &Arguments, dt: f64) -> Resu
     motion.velocity = Vec3::z() * -SPEED;
     let mut plate = SurfaceContacts::new(disc_plate(RADIUS, 0.01, 64)?, 0);
     let (law, table): (Law, _) = (HertzMindlin, bed.pair_table().clone());
-    if reach.is_some() {
-        let zone = ActiveZone {
-            block_m: 0.024,
-            calm_speed: of.calm * SPEED,
-            calm_time_s: 4e-3,
-            imbalance: of.imbalance,
-        };
+    if let Some((_, imbalance)) = zone {
+        let zone = ActiveZone { block_m: 0.024, calm_speed: of.calm * SPEED, calm_time_s: 4e-3, imbalance };
         bed.set_active_zone(Some(zone))?;
     }
     let n_samples = (of.depth / SPEED / dt / STEPS_PER_SAMPLE as f64).ceil() as usize;
     let (mut forces, mut awake, mut imbalance) = (Vec::new(), 0.0, 0.0_f64);
     let begun = Instant::now();
     for _ in 0..n_samples {
-        if let Some(reach) = reach {
+        if let Some((reach, _)) = zone {
             let around = Vec3::new(RADIUS, RADIUS, 0.0) + Vec3::repeat(reach);
             bed.keep_awake(vec![[motion.position - around, motion.position + around]]);
         }
@@ -140,9 +143,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut nudged = bed.clone();
     nudged.grains_mut().spheres[0].position.x += 1e-9;
     report("every grain, one moved by 1 nm", &press(nudged, None, &arguments, dt)?);
-    for &reach in &arguments.reaches {
-        let press = press(bed.clone(), Some(reach), &arguments, dt)?;
-        report(&format!("zone reaching {:.0} mm", 1e3 * reach), &press);
+    for &(reach, imbalance) in &arguments.zones {
+        let press = press(bed.clone(), Some((reach, imbalance)), &arguments, dt)?;
+        report(&format!("zone reaching {:.0} mm, imbalance {imbalance}", 1e3 * reach), &press);
     }
     figures.write(arguments.json.as_deref())
 }

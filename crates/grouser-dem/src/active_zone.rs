@@ -200,13 +200,12 @@ impl<M: Copy> Zone<M> {
             self.look_for_surprises(grains);
         }
         self.wake_where_grains_came(grains);
-        // 3. Who is out of balance wakes with all blocks around; so do tools' boxes.
+        // 3. Who is out of balance wakes with its block; so do tools' boxes.
         let mut flags = vec![false; self.blocks.n()];
         for place in std::mem::take(&mut self.tripped) {
             flags[self.blocks.of(to_f64(&grains.spheres[place as usize]))] = true;
         }
         let boxes = std::mem::take(&mut self.boxes);
-        let mut flags = self.blocks.grown(flags, 1e-3 * self.settings.block_m);
         for block in boxes.iter().flat_map(|b| self.blocks.in_box(b)) {
             flags[block] = true;
         }

@@ -26,6 +26,7 @@ mod study;
 mod study_outcome;
 mod time_step;
 mod tool_ledger;
+mod zone;
 
 pub use bed::SETTLED_SOLID_FRACTION;
 pub use compose::run;
@@ -56,6 +57,9 @@ pub enum SetupError {
     /// The bed.
     #[error(transparent)]
     Bed(#[from] BedError),
+    /// The settled bed.
+    #[error("the settled bed cannot be used: {0}; remedy: {remedy}", remedy = .0.remedy())]
+    Motion(#[from] grouser_dem::Failure),
     /// The shape of a tool.
     #[error(transparent)]
     Shape(#[from] grouser_geometry::generate::ShapeError),

@@ -19,6 +19,32 @@ pub struct Dials {
     pub precision: Precision,
     /// Damping of every grain's absolute velocity [N·s/m]; 0 is off.
     pub background_damping_n_s_m: f64,
+    /// Grains at rest and far from the tool sleep; left out, every grain is computed at every step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub active_zone: Option<ActiveZone>,
+}
+
+/// When grains sleep. `docs/theory/active_zone.md` says what it saves and what error it makes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ActiveZone {
+    /// Distance from the tool's bounding box within which no grain sleeps [m]. As wide as the tool is a safe choice.
+    pub reach_m: f64,
+    /// Speed below which a grain counts as at rest, over the tool's speed [-].
+    #[serde(default = "calm")]
+    pub calm: f64,
+    /// Out-of-balance force on a sleeping grain, over its weight and the force that its sleeping neighbours carry, beyond
+    /// which it wakes [-].
+    #[serde(default = "imbalance")]
+    pub imbalance: f64,
+}
+
+fn calm() -> f64 {
+    0.02
+}
+
+fn imbalance() -> f64 {
+    0.3
 }
 
 impl Default for Dials {
@@ -30,6 +56,7 @@ impl Default for Dials {
             rotation: Rotation::default(),
             precision: Precision::default(),
             background_damping_n_s_m: 0.0,
+            active_zone: None,
         }
     }
 }

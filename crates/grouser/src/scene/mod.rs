@@ -18,7 +18,9 @@ mod study;
 mod tool;
 mod validate;
 
-pub use dials::{Dials, Dlr, Figures, Forces, Precision, RestitutionTail, Rolling, Rotation, Tilting};
+pub use dials::{
+    ActiveZone, Dials, Dlr, Figures, Forces, Precision, RestitutionTail, Rolling, Rotation, Tilting,
+};
 pub use locate::{Found, Path, locate};
 pub use material::{Material, Pair};
 pub use mesh::Mesh;

@@ -5,6 +5,8 @@ mod grains;
 mod press;
 mod slips;
 mod study;
+mod tool_room;
+mod zone;
 
 use super::{Motion, Outputs, Scenario, Soil, Tool};
 use crate::diagnostic::Diagnostic;
@@ -90,6 +92,9 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
         "in (0, 1]",
         "a percentage; above 1 the integration is unstable, 0.2 is a safe choice",
     );
+    if let Some(zone) = &scenario.dials.active_zone {
+        zone::validate(&mut check, scenario, zone);
+    }
     let Outputs { sample_every_s, vtk_every_s, checkpoint_every_s } = scenario.outputs;
     check.positive("outputs.sample_every_s", sample_every_s, "a time [s]");
     check.positive("outputs.vtk_every_s", vtk_every_s, "a time [s]");
