@@ -18,7 +18,7 @@ Everything done to this repository:
 
   cargo xtask test              format, lints, unit and doc tests, verification, every scene with --quick, tidiness
   cargo xtask tidy              the repository's rules alone
-  cargo xtask bench [GROUP] …   criterion benches and throughput figures; what follows GROUP goes to the program
+  cargo xtask bench [GROUP] …   criterion benches and throughput figures; `--json FILE` writes them all as one array
   cargo xtask peers [--json FILE]  the same beds in LAMMPS, LIGGGHTS and Yade where installed: speed and agreement
   cargo xtask docs              the crates' documentation, warnings being errors
 ";

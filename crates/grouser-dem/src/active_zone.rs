@@ -68,6 +68,8 @@ struct Held {
 const ASLEEP: u16 = u16::MAX;
 /// Looks at the speeds of grains within the calm time.
 const LOOKS: u16 = 4;
+/// Occasions to wake between two looks.
+const WAKINGS: f64 = 4.0;
 
 /// The active zone of a bed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -90,8 +92,8 @@ pub(crate) struct Zone<M> {
     held: Vec<Held>,
     /// Force that far sleepers lack of balance, in sum [N].
     far_imbalance: Vec3,
-    /// Held grains that are out of balance.
-    tripped: Vec<u32>,
+    /// Blocks of held grains that are out of balance.
+    tripped: Vec<usize>,
     pub sleepers: Sleepers<M>,
     /// Force of sleeping grains on each plane [N].
     pub plane_forces: Vec<Vec3>,
@@ -157,7 +159,7 @@ impl<M: Copy> Zone<M> {
             imbalance += force.norm();
             let turning = torque.norm() / sphere.radius.to_f64();
             if force.norm() > held.limit || turning > held.limit {
-                self.tripped.push(held.grain);
+                self.tripped.push(self.blocks.of(to_f64(sphere)));
                 self.is_due = true;
             }
         }
@@ -182,7 +184,7 @@ impl<M: Copy> Zone<M> {
             if grains.loads[place] != Load::default() {
                 grains.loads[place] = Load::default();
                 self.account.n_surprised += 1;
-                self.tripped.push(place as u32);
+                self.tripped.push(self.blocks.of(to_f64(&grains.spheres[place])));
                 self.is_due = true;
             }
         }
@@ -193,7 +195,10 @@ impl<M: Copy> Zone<M> {
         self.steps_since_look += 1;
         let steps_per_look = (self.settings.calm_time_s / (f64::from(LOOKS) * time_step)).ceil().max(1.0);
         let is_regular = f64::from(self.steps_since_look) >= steps_per_look;
-        if !is_regular && !self.is_due {
+        // Between two looks some wakings at a time: each of them makes the lists anew.
+        let steps_per_waking = (steps_per_look / WAKINGS).floor().max(1.0);
+        let may_wake = f64::from(self.steps_since_look) % steps_per_waking == 0.0;
+        if !(is_regular || self.is_due && may_wake) {
             return;
         }
         if is_regular {
@@ -202,8 +207,8 @@ impl<M: Copy> Zone<M> {
         self.wake_where_grains_came(grains);
         // 3. Who is out of balance wakes with its block; so do tools' boxes.
         let mut flags = vec![false; self.blocks.n()];
-        for place in std::mem::take(&mut self.tripped) {
-            flags[self.blocks.of(to_f64(&grains.spheres[place as usize]))] = true;
+        for block in std::mem::take(&mut self.tripped) {
+            flags[block] = true;
         }
         let boxes = std::mem::take(&mut self.boxes);
         for block in boxes.iter().flat_map(|b| self.blocks.in_box(b)) {

@@ -44,3 +44,27 @@ fn grains_too_soft_for_their_speed_are_named() {
     let result = bed.run(1000, 1e-6, |_| Ok::<(), Failure>(()));
     assert!(matches!(result.unwrap_err(), Failure::OverlapTooLarge { depth, .. } if depth > LARGEST_OVERLAP));
 }
+
+#[test]
+fn beds_of_no_one_or_two_grains_are_refused_or_move_for_a_hundred_thousand_seeds() {
+    let between = table(0.5, 0.5, Tail::CutCorrected);
+    for seed in 0..100_000_u64 {
+        let n_grains = (seed % 3) as usize;
+        let is_periodic = [seed & 4 == 0, seed & 8 == 0, false];
+        let domain = Domain { lower: Vec3::zeros(), upper: Vec3::repeat(0.1), is_periodic };
+        let radii = match seed & 16 {
+            0 => RadiusDistribution::Uniform { from_m: 1e-3, to_m: 1e-2 },
+            _ => RadiusDistribution::Graded { from_m: 1e-4, to_m: 1e-2 },
+        };
+        let layer = Layer { radii, n_grains, density: SAND.density_kg_m3, material: 0 };
+        let spheres =
+            random_packing::<F64>(&domain, &[layer], seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)).unwrap();
+        assert_eq!(spheres.len(), n_grains);
+        let planes = vec![Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0 }];
+        let settings = BedSettings { domain, planes, gravity: Vec3::z() * -9.81, ..empty_space() };
+        match Bed::new(spheres, settings, between.clone(), HertzMindlin::<false, false>) {
+            Ok(mut bed) => bed.run(2, 1e-6, |_| Ok::<(), Failure>(())).unwrap(),
+            Err(error) => assert!(n_grains == 0 && error == BedError::Empty, "{seed}: {error}"),
+        }
+    }
+}
