@@ -5,9 +5,11 @@ mod atomic;
 pub mod chart;
 pub mod checkpoint;
 mod pvd;
+pub mod raster;
 pub mod summary;
 mod table;
 mod vtp;
+pub mod vtu;
 
 pub use atomic::write_atomic;
 pub use pvd::Series;

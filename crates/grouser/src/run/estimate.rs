@@ -44,6 +44,11 @@ fn of_study(scenario: &Scenario, study: &Study) -> Result<Estimate, SetupError> 
     Ok(estimate)
 }
 
+/// Number of tires that roll.
+fn tire_runs(scenario: &Scenario) -> usize {
+    super::tire::parts(scenario).map_or(0, |(tire, roll)| super::tire::Variant::all(tire, roll).len())
+}
+
 /// Estimates a scene on grains; takes about a fifth of a second, for the measurement.
 fn on_grains(scenario: &Scenario, soil: &Grains) -> Result<Estimate, SetupError> {
     let step = time_step(scenario, soil)?;
@@ -54,7 +59,8 @@ fn on_grains(scenario: &Scenario, soil: &Grains) -> Result<Estimate, SetupError>
     // The top grain falls about once the bed's depth; coming to rest takes about three times as long.
     let fall = (2.0 * 1.2 * depth / gravity).sqrt();
     let settling_steps = (4.0 * fall / step.step_s) as u64;
-    let tool_s = Indenter::count(scenario) as f64 * scenario.motion.as_ref().map_or(0.0, Motion::duration);
+    let passes = Indenter::count(scenario) + tire_runs(scenario);
+    let tool_s = passes as f64 * scenario.motion.as_ref().map_or(0.0, Motion::duration);
     let tool_steps = (tool_s / step.step_s) as u64;
     let copies = if tool_steps > 0 { 2 } else { 1 };
     let rate = with_law(&scenario.dials, MeasuredRate { n_grains })??;

@@ -28,6 +28,7 @@ impl Indenter {
         match &scenario.tool {
             Some(Tool::Plates(plates)) => plates.diameters_m.len(),
             Some(Tool::Mesh(_)) => 1,
+            Some(Tool::Tire(_)) => 0,
             None => 0,
         }
     }
@@ -38,6 +39,7 @@ impl Indenter {
     /// When the shape is refused or its file cannot be read.
     pub fn new(tool: &Tool, number: usize) -> Result<Self, SetupError> {
         match tool {
+            Tool::Tire(_) => unreachable!("a tire is not pressed"),
             Tool::Plates(plates) => {
                 let diameter = plates.diameters_m[number];
                 // The polygon has the circle's area: n/2 sin(2π/n) R² = π r².

@@ -23,6 +23,7 @@ mod rigid_tool;
 mod study;
 mod study_outcome;
 mod time_step;
+pub mod tire;
 mod tool_ledger;
 
 pub use bed::SETTLED_SOLID_FRACTION;
@@ -33,7 +34,7 @@ pub use estimate::{Estimate, estimate};
 pub use experiment::{Advanced, Experiment, Outcome, Picture, Section, Status, Verdict};
 pub use law::{Law, LawBed, Possible, WithLaw, with_law};
 pub use materials::Materials;
-pub use on_bed::{OnBed, Pass};
+pub use on_bed::{Broken, OnBed, Pass};
 pub use press::Pressing;
 pub use progress::{Progress, Stage};
 pub use time_step::{COLLISION_FRACTION, TRAVEL_FRACTION, time_step};
@@ -60,6 +61,9 @@ pub enum SetupError {
     /// The motion of a tool.
     #[error(transparent)]
     Rigid(#[from] grouser_rigid::RigidError),
+    /// The tread of a tire.
+    #[error(transparent)]
+    Tread(#[from] tire::TreadError),
     /// The file of a tool's surface.
     #[error("{0}")]
     Mesh(String),

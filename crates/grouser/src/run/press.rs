@@ -2,7 +2,7 @@
 
 use super::frames::{grains_frame, surface_frame};
 use super::indenter::Indenter;
-use super::on_bed::Pass;
+use super::on_bed::{Broken, Pass};
 use super::press_outcome;
 use super::rigid_tool::RigidTool;
 use super::tool_ledger::ToolLedger;
@@ -112,7 +112,7 @@ impl<L: Law> Pass<L> for Pressing<L> {
         })
     }
 
-    fn advance(&mut self, _: &Scenario) -> Result<(), Failure> {
+    fn advance(&mut self, _: &Scenario) -> Result<(), Broken> {
         let dt = self.time_step;
         let n_steps = (self.n_steps - self.steps_done)
             .min(self.steps_per_sample - self.steps_done % self.steps_per_sample);

@@ -13,6 +13,7 @@ mod reference;
 mod soil;
 mod source;
 mod study;
+mod tire;
 mod tool;
 mod validate;
 
@@ -27,6 +28,7 @@ pub use reference::{PlateCurve, PressureSinkage, Reference};
 pub use soil::{Container, Grains, Layer, Settle, Side, Sizes, Soil};
 pub use source::Source;
 pub use study::{Axis, Choice, Curves, Study, Trend, Variant};
+pub use tire::{Roll, SubSteps, Tire, TireElements, TireModel, Tread, Vertical};
 pub use tool::{Plates, Tool};
 pub use validate::{Problem, validate};
 

@@ -1,5 +1,6 @@
 //! How tools move.
 
+use super::Roll;
 use serde::{Deserialize, Serialize};
 
 /// Kinds of motion.
@@ -7,6 +8,8 @@ use serde::{Deserialize, Serialize};
 pub enum Motion {
     /// Straight down at constant speed.
     Press(Press),
+    /// Down until the ground carries a load, then rolling with a given slip.
+    Roll(Roll),
 }
 
 impl Motion {
@@ -14,6 +17,10 @@ impl Motion {
     pub fn speed(&self) -> f64 {
         match self {
             Motion::Press(press) => press.speed_m_s,
+            // The top of a tire that slips moves faster than twice the speed.
+            Motion::Roll(roll) => roll.slips.iter().fold(roll.sinking_speed_m_s, |most, slip| {
+                most.max(roll.speed_m_s * (1.0 + 1.0 / (1.0 - slip)))
+            }),
         }
     }
 
@@ -21,6 +28,7 @@ impl Motion {
     pub fn duration(&self) -> f64 {
         match self {
             Motion::Press(press) => (press.gap_m + press.depth_m) / press.speed_m_s,
+            Motion::Roll(roll) => roll.duration(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What meets the ground.
 
-use super::Mesh;
+use super::{Mesh, Tire};
 use serde::{Deserialize, Serialize};
 
 /// Kinds of tools.
@@ -10,6 +10,8 @@ pub enum Tool {
     Plates(Plates),
     /// A rigid body with a surface from a file.
     Mesh(Mesh),
+    /// An elastic tread on a rim.
+    Tire(Tire),
 }
 
 impl Tool {
@@ -18,6 +20,7 @@ impl Tool {
         match self {
             Tool::Plates(plates) => &plates.material,
             Tool::Mesh(mesh) => &mesh.material,
+            Tool::Tire(tire) => &tire.material,
         }
     }
 }

@@ -4,8 +4,9 @@ mod dials;
 mod grains;
 mod press;
 mod study;
+mod tire;
 
-use super::{Motion, Outputs, Reference, Scenario, Soil};
+use super::{Motion, Outputs, Reference, Scenario, Soil, Tool};
 use crate::diagnostic::Diagnostic;
 
 /// A value that cannot be, with its path in the scenario.
@@ -43,6 +44,15 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
         grains::validate(&mut check, scenario, bed);
     }
     match (&scenario.tool, &scenario.motion) {
+        (Some(Tool::Tire(tire)), Some(Motion::Roll(roll))) => match &scenario.soil {
+            Soil::Grains(bed) => tire::validate(&mut check, scenario, bed, (tire, roll)),
+        },
+        (Some(Tool::Tire(_)), Some(_)) | (Some(_), Some(Motion::Roll(_))) => check.fail(
+            "motion",
+            "tool and motion do not belong together",
+            "`Roll(…)` for a `Tire(…)`, `Press(…)` for plates and meshes",
+            "a part taken from another scene",
+        ),
         (Some(tool), Some(Motion::Press(press))) => match &scenario.soil {
             Soil::Grains(bed) => press::validate(&mut check, scenario, bed, tool, press),
         },

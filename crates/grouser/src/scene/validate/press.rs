@@ -8,6 +8,7 @@ pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, tool: &Too
     check.material(scenario, "tool.material", tool.material());
     match tool {
         Tool::Plates(plates) => validate_plates(check, bed, plates),
+        Tool::Tire(_) => unreachable!("a tire is not pressed"),
         Tool::Mesh(mesh) => {
             check.positive(
                 "tool.scale",
