@@ -60,7 +60,7 @@ const LARGEST_INDENTATION: f64 = 0.5;
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(bound = "L: Law")]
 enum Body<L: Law> {
-    Rigid { contacts: SurfaceContacts<L::Memory>, work: [f64; 2] },
+    Rigid { contacts: Box<SurfaceContacts<L::Memory>>, work: [f64; 2] },
     Elastic(Box<ElasticTire<L>>),
 }
 
@@ -158,7 +158,7 @@ impl<L: Law> Pass<L> for TireRun<L> {
                 let mesh = variant.shape(tire).mesh().map_err(TreadError::from)?;
                 let outer = mesh.facets("outer").expect("treads have an outer surface");
                 let (surface, _) = mesh.triangle_surface(outer);
-                Body::Rigid { contacts: SurfaceContacts::new(surface, material), work: [0.0; 2] }
+                Body::Rigid { contacts: Box::new(SurfaceContacts::new(surface, material)), work: [0.0; 2] }
             }
             Some(tread) => {
                 let sub_steps = match tire.sub_steps {
@@ -200,9 +200,9 @@ impl<L: Law> Pass<L> for TireRun<L> {
         let begun = Instant::now();
         let n_steps = (self.n_steps - self.steps_done)
             .min(self.steps_per_sample - self.steps_done % self.steps_per_sample);
-        let (law, dt, gravity) = (L::default(), self.time_step, self.gravity);
+        let (dt, gravity) = (self.time_step, self.gravity);
         let Self { bed, body, axle, traction, steps_done, .. } = self;
-        let table = bed.pair_table().clone();
+        let (law, table) = (*bed.law(), bed.pair_table().clone());
         bed.run(n_steps, dt, |grains| {
             traction.begin_step();
             body.step(axle, grains, (&law, &table), gravity, dt, traction)?;
