@@ -46,7 +46,7 @@ pub(super) fn leave(
         write(name.clone(), bytes)?;
     }
     files.extend(series.iter().map(|series| series.index()));
-    if !matches!(ended, Ok(Ended::Done)) {
+    if folder.join("checkpoint.bin").is_file() {
         files.push("checkpoint.bin".into());
     }
     let summary = Summary {
