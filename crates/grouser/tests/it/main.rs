@@ -5,6 +5,7 @@ mod killed;
 mod messages;
 mod slips;
 mod study;
+mod vehicle;
 
 use std::path::Path;
 use std::process::{Command, Output};
