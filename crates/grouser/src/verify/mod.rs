@@ -1,5 +1,6 @@
 //! Cases with an analytical or published answer. One case is one function; a new one is a row of [`cases`].
 
+mod angular;
 mod bodies;
 mod chung_ooi;
 mod precision;
@@ -113,6 +114,11 @@ const GRAINS: &[(&str, Rows)] = &[
     ("rolling on an incline", two_bodies::incline),
     ("free fall with bounces", two_bodies::bounces),
     ("a stack at rest", two_bodies::stack),
+    ("tilting arms", angular::arms_and_sign_change),
+    ("toppling", angular::toppling),
+    ("tilting limits", angular::limits),
+    ("tilting energy", angular::energy),
+    ("angular grains at rest", angular::rest_and_extremes),
     ("mixed precision", precision::mixed),
     ("single precision", precision::single),
 ];
