@@ -17,6 +17,7 @@ pub fn layers(soil: &Grains, materials: &Materials) -> Vec<Layer> {
         radii: match layer.sizes {
             Sizes::Monodisperse { radius_m } => RadiusDistribution::Monodisperse(radius_m),
             Sizes::Uniform { radius_m: (from_m, to_m) } => RadiusDistribution::Uniform { from_m, to_m },
+            Sizes::Graded { radius_m: (from_m, to_m) } => RadiusDistribution::Graded { from_m, to_m },
         },
         n_grains: (SETTLED_SOLID_FRACTION * area * layer.depth_m / layer.sizes.mean_volume()).round()
             as usize,

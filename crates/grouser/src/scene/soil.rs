@@ -92,6 +92,11 @@ pub enum Sizes {
         /// Smallest and largest radius [m].
         radius_m: (f64, f64),
     },
+    /// Mass spread evenly over the logarithm of size: a straight grading curve.
+    Graded {
+        /// Smallest and largest radius [m].
+        radius_m: (f64, f64),
+    },
 }
 
 impl Sizes {
@@ -99,13 +104,19 @@ impl Sizes {
     pub fn range(&self) -> (f64, f64) {
         match *self {
             Sizes::Monodisperse { radius_m } => (radius_m, radius_m),
-            Sizes::Uniform { radius_m } => radius_m,
+            Sizes::Uniform { radius_m } | Sizes::Graded { radius_m } => radius_m,
         }
     }
 
     /// Mean volume of a grain [m³].
     pub fn mean_volume(&self) -> f64 {
         let (low, high) = self.range();
+        if let Sizes::Graded { .. } = self
+            && low < high
+        {
+            // mean of r³ where the number of grains falls like r⁻⁴: 3 ln(high/low)/(low⁻³ - high⁻³)
+            return 4.0 * std::f64::consts::PI * (high / low).ln() / (low.powi(-3) - high.powi(-3));
+        }
         // mean of r³ over a uniform range: (low + high)(low² + high²)/4
         std::f64::consts::PI / 3.0 * (low + high) * (low * low + high * high)
     }
@@ -147,5 +158,12 @@ mod tests {
             / n as f64;
         let exact = Sizes::Uniform { radius_m: (low, high) }.mean_volume();
         assert!((mean / exact - 1.0).abs() < 1e-7);
+    }
+
+    #[test]
+    fn mean_volume_of_a_grading_curve_is_that_of_the_packing() {
+        let of_packing = grouser_dem::RadiusDistribution::Graded { from_m: 0.002, to_m: 0.005 }.mean_volume();
+        let of_scene = Sizes::Graded { radius_m: (0.002, 0.005) }.mean_volume();
+        assert!((of_scene / of_packing - 1.0).abs() < 1e-12);
     }
 }

@@ -6,6 +6,7 @@ mod grains;
 mod press;
 mod slips;
 mod study;
+mod tool_room;
 
 use super::{Motion, Outputs, Scenario, Soil, Tool};
 use crate::diagnostic::Diagnostic;

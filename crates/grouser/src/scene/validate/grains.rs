@@ -27,7 +27,7 @@ pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains) {
             Sizes::Monodisperse { radius_m } => {
                 check.positive(&path("sizes.radius_m"), radius_m, "a radius [m]")
             }
-            Sizes::Uniform { radius_m: (low, high) } => {
+            Sizes::Uniform { radius_m: (low, high) } | Sizes::Graded { radius_m: (low, high) } => {
                 check.positive(&path("sizes.radius_m[0]"), low, "the smallest radius [m]");
                 check.require(
                     &path("sizes.radius_m[1]"),
@@ -35,6 +35,13 @@ pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains) {
                     high >= low && high.is_finite(),
                     "at least the smallest radius",
                     "the two ends were exchanged",
+                );
+                check.require(
+                    &path("sizes.radius_m[1]"),
+                    high,
+                    high.is_nan() || high <= 100.0 * low || low <= 0.0,
+                    "at most a hundred times the smallest radius: the grids that find neighbours go no further",
+                    "the smallest sizes of a measured grading curve, which no resolved bed can hold",
                 );
             }
         }
@@ -51,7 +58,7 @@ fn room(check: &mut Check, bed: &Grains) {
     let largest = bed.layers.iter().map(|layer| layer.sizes.range().1).fold(0.0, f64::max);
     let sides = [("x", bed.container.x), ("y", bed.container.y)];
     for (axis, (name, side)) in sides.into_iter().enumerate() {
-        let least = largest * if side == Side::Periodic { 6.0 } else { 4.0 };
+        let least = largest * if side == Side::Periodic { 10.0 } else { 4.0 };
         let size = bed.container.size_m[axis];
         check.require(
             &format!("soil.container.size_m[{axis}]"),
@@ -59,7 +66,7 @@ fn room(check: &mut Check, bed: &Grains) {
             size >= least,
             &format!(
                 "at least {least:.4} m along {name}, {} radii of the largest grain",
-                if side == Side::Periodic { 6 } else { 4 }
+                if side == Side::Periodic { 10 } else { 4 }
             ),
             "grains in millimetres and the box in metres, or a box for another grain size",
         );

@@ -1,6 +1,6 @@
 //! Checks of plates pressed into a bed.
 
-use super::{Check, grains};
+use super::{Check, grains, tool_room};
 use crate::scene::{Grains, Plates, Press, Scenario, Tool};
 
 pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, tool: &Tool, press: &Press) {
@@ -15,6 +15,12 @@ pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, tool: &Too
                 mesh.scale,
                 "metres for one unit of the file; 0.001 for millimetres",
             );
+            if let Ok(surface) = mesh.surface() {
+                let extent = surface.bounding_box().extent();
+                (0..2).for_each(|axis| {
+                    tool_room::validate_image(check, bed, "tool.file", axis, extent[axis]);
+                });
+            }
         }
     }
     check.positive("motion.speed_m_s", press.speed_m_s, "a speed downwards [m/s]");
@@ -43,6 +49,7 @@ pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, tool: &Too
 
 fn validate_plates(check: &mut Check, bed: &Grains, plates: &Plates) {
     check.positive("tool.thickness_m", plates.thickness_m, "a thickness [m]");
+    tool_room::validate_thickness(check, bed, "tool.thickness_m", plates.thickness_m);
     let segments = plates.segments as f64;
     check.require("tool.segments", segments, plates.segments >= 3, "at least 3; 64 looks round", "");
     if plates.diameters_m.is_empty() {
@@ -53,6 +60,11 @@ fn validate_plates(check: &mut Check, bed: &Grains, plates: &Plates) {
         let path = format!("tool.diameters_m[{i}]");
         check.positive(&path, diameter, "a diameter [m]");
         check.require(&path, diameter, diameter < narrowest || diameter.is_nan(), &format!("below {narrowest} m, the narrower side of the container; a third of it keeps its sides out of the result"), "millimetres where metres are asked");
+        for axis in 0..2 {
+            if diameter < narrowest {
+                tool_room::validate_image(check, bed, &path, axis, diameter);
+            }
+        }
     }
 }
 
