@@ -12,6 +12,8 @@ use crate::solid::{Solid, State, Support};
 
 /// Steps between two looks at the energy.
 const WATCH_INTERVAL: u64 = 64;
+/// Steps between two looks for inverted elements where the forces come from an assembled stiffness, which does not see them.
+const INVERSION_INTERVAL: u64 = 256;
 
 /// Work and dissipation since the first step [J], by the trapezoidal rule.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -165,13 +167,16 @@ impl Solid {
         // 3. to 5. Forces of the elements.
         let beta = self.settings.stiffness_damping;
         let viscosity = (beta > 0.0).then_some(Viscosity { velocity: &self.state.velocity, beta });
-        let viscous_power = self.elements.update(&self.state.displacement, viscosity).map_err(|i| {
-            DynamicsError::InvertedElement {
-                element: self.mesh.element_label(i.element),
-                volume_ratio: i.volume_ratio,
-                time: self.state.time,
-                step: self.state.steps,
-            }
+        let displacement = &self.state.displacement;
+        let mut forces = self.elements.update(displacement, viscosity);
+        if self.state.steps.is_multiple_of(INVERSION_INTERVAL) {
+            forces = forces.and_then(|power| self.elements.refuse_inversion(displacement).map(|()| power));
+        }
+        let viscous_power = forces.map_err(|i| DynamicsError::InvertedElement {
+            element: self.mesh.element_label(i.element),
+            volume_ratio: i.volume_ratio,
+            time: self.state.time,
+            step: self.state.steps,
         })?;
         let mut distributed = std::mem::take(&mut self.force);
         let has_distributed = !self.loads.pressures.is_empty() || self.loads.spin.is_turning();
@@ -251,15 +256,10 @@ impl Solid {
         })
     }
 
-    /// Bytes that one step must move at least: the element constants once (twice with averaged pressure); for every node of every
-    /// block its number, displacement, and force written and read; for every node the vectors of forces and of motion.
+    /// Bytes that one step must move at least: those of the forces, and for every node the vectors of loads and of motion.
     pub fn bytes_per_step(&self) -> f64 {
-        let passes = if self.is_pressure_averaged() { 2.0 } else { 1.0 };
-        // Number 4 + displacement 24 + force out 24 and in 24 + place 4.
-        let block_nodes = 80.0 * self.elements.n_block_nodes() as f64;
         // Drift: v 48, u 48, a 24; node pass: start 4, applied 24, mass 8, v 48, a 24, mask 3.
-        let nodes = 231.0 * self.mesh.nodes.len() as f64;
-        passes * self.elements.element_bytes() as f64 + block_nodes + nodes
+        self.elements.bytes_per_step(self.is_pressure_averaged()) + 231.0 * self.mesh.nodes.len() as f64
     }
 
     /// Kinetic energy in the solid's frame [J].

@@ -3,23 +3,17 @@
 //! Blocks run in parallel, each into memory of its own; every node then adds its blocks' contributions in ascending order.
 //! The order of all sums is fixed by the mesh: the same bits for any number of threads.
 
-use grouser_geometry::{ElementOrder, TetrahedralMesh, Vec3};
+use grouser_geometry::{TetrahedralMesh, Vec3};
 use rayon::prelude::*;
 
 use crate::block_kernel::{self, Scratch, gather};
 use crate::element_blocks::{Block, NodeGather};
+use crate::elements::NodeForces;
 use crate::law::Law;
 use crate::nodal_average::NodalAverage;
 use crate::number::LANES;
 use crate::tensor::Tensor;
 use crate::with_law;
-
-/// Elements of a solid, ready to give forces.
-#[derive(Clone, Debug)]
-pub(crate) enum Elements {
-    Linear(BlockSet<3, 1>),
-    Quadratic(BlockSet<9, 4>),
-}
 
 /// Blocks with the memory that their results go to.
 #[derive(Clone, Debug)]
@@ -43,25 +37,6 @@ pub(crate) struct BlockResult {
     pub viscous_power: f64,
 }
 
-/// Internal forces of the nodes, of the last call of [`Elements::update`].
-#[derive(Clone, Copy)]
-pub(crate) struct NodeForces<'a> {
-    gather: &'a NodeGather,
-    forces: &'a [Vec3],
-}
-
-impl NodeForces<'_> {
-    /// Internal force of node `n` [N].
-    #[inline]
-    pub fn of(&self, n: usize) -> Vec3 {
-        let mut sum = Vec3::zeros();
-        for &place in self.gather.of(n) {
-            sum += self.forces[place as usize];
-        }
-        sum
-    }
-}
-
 /// Viscous part: stiffness-proportional damping β [s] with the nodal velocities.
 #[derive(Clone, Copy)]
 pub(crate) struct Viscosity<'a> {
@@ -76,61 +51,8 @@ pub(crate) struct Inversion {
     pub volume_ratio: f64,
 }
 
-impl Elements {
-    pub fn new(mesh: &TetrahedralMesh, laws: &[Law], is_averaged: bool) -> Self {
-        match mesh.order {
-            ElementOrder::Linear => Self::Linear(BlockSet::new(mesh, laws, is_averaged)),
-            ElementOrder::Quadratic => Self::Quadratic(BlockSet::new(mesh, laws, false)),
-        }
-    }
-
-    /// Number of (block, node) pairs: nodes counted once for each block that touches them.
-    pub fn n_block_nodes(&self) -> usize {
-        self.node_forces().gather.n_sources()
-    }
-
-    /// Memory of the groups' constants [bytes].
-    pub fn element_bytes(&self) -> usize {
-        fn bytes<const E: usize, const Q: usize>(set: &BlockSet<E, Q>) -> usize {
-            set.blocks.iter().map(|b| size_of_val(&b.groups[..])).sum()
-        }
-        match self {
-            Self::Linear(set) => bytes(set),
-            Self::Quadratic(set) => bytes(set),
-        }
-    }
-
-    /// Computes the internal forces of the displacements [m]; returns the power of the viscous stress [W].
-    pub fn update(
-        &mut self,
-        displacement: &[Vec3],
-        viscosity: Option<Viscosity<'_>>,
-    ) -> Result<f64, Inversion> {
-        match self {
-            Self::Linear(set) => set.update(displacement, viscosity),
-            Self::Quadratic(set) => set.update(displacement, viscosity),
-        }
-    }
-
-    /// Forces of the last [`Self::update`].
-    pub fn node_forces(&self) -> NodeForces<'_> {
-        match self {
-            Self::Linear(set) => NodeForces { gather: &set.gather, forces: &set.forces },
-            Self::Quadratic(set) => NodeForces { gather: &set.gather, forces: &set.forces },
-        }
-    }
-
-    /// Whether the solid is large enough for threads to pay.
-    pub fn is_worth_threads(&self) -> bool {
-        match self {
-            Self::Linear(set) => is_worth_threads(set.blocks.len()),
-            Self::Quadratic(set) => is_worth_threads(set.blocks.len()),
-        }
-    }
-}
-
 impl<const E: usize, const Q: usize> BlockSet<E, Q> {
-    fn new(mesh: &TetrahedralMesh, laws: &[Law], is_averaged: bool) -> Self {
+    pub fn new(mesh: &TetrahedralMesh, laws: &[Law], is_averaged: bool) -> Self {
         let blocks: Vec<Block<E, Q>> = Block::of_mesh(mesh, laws);
         let gather = NodeGather::new(mesh.nodes.len(), blocks.iter().map(|b| &b.nodes[..]));
         let mut average = is_averaged.then(|| NodalAverage::new(&blocks, laws));
@@ -156,7 +78,12 @@ impl<const E: usize, const Q: usize> BlockSet<E, Q> {
         Self { blocks, forces: vec![Vec3::zeros(); n_places], volume_changes, results, gather, average }
     }
 
-    fn update(&mut self, displacement: &[Vec3], viscosity: Option<Viscosity<'_>>) -> Result<f64, Inversion> {
+    /// Internal forces of the displacements [m]; returns the power of the viscous stress [W].
+    pub fn update(
+        &mut self,
+        displacement: &[Vec3],
+        viscosity: Option<Viscosity<'_>>,
+    ) -> Result<f64, Inversion> {
         let Self { blocks, forces, volume_changes, results, average, .. } = self;
         let is_parallel = is_worth_threads(blocks.len());
         if let Some(average) = average {
@@ -203,6 +130,26 @@ impl<const E: usize, const Q: usize> BlockSet<E, Q> {
             return Err(self.find_inversion(b, displacement));
         }
         Ok(self.results.iter().map(|r| r.viscous_power).sum())
+    }
+
+    /// Forces of the last [`Self::update`].
+    pub fn node_forces(&self) -> NodeForces<'_> {
+        NodeForces::Gathered { gather: &self.gather, forces: &self.forces }
+    }
+
+    /// Number of (block, node) pairs: nodes counted once for each block that touches them.
+    pub fn n_block_nodes(&self) -> usize {
+        self.gather.n_sources()
+    }
+
+    /// Memory of the groups' constants [bytes].
+    pub fn element_bytes(&self) -> usize {
+        self.blocks.iter().map(|b| size_of_val(&b.groups[..])).sum()
+    }
+
+    /// Whether the solid is large enough for threads to pay.
+    pub fn is_worth_threads(&self) -> bool {
+        is_worth_threads(self.blocks.len())
     }
 
     /// Element of the smallest volume ratio of block `b`.

@@ -48,6 +48,7 @@ mod block_kernel;
 mod dynamics;
 mod element_blocks;
 mod element_state;
+mod elements;
 mod fields;
 mod internal_force;
 pub mod law;
@@ -62,6 +63,7 @@ mod polar;
 mod solid;
 mod stable_step;
 pub mod statics;
+mod stiffness_rows;
 pub mod tensor;
 pub mod verification;
 

@@ -5,7 +5,7 @@
 use grouser_geometry::Vec3;
 use rayon::prelude::*;
 
-use crate::internal_force::NodeForces;
+use crate::elements::NodeForces;
 use crate::loads::Spin;
 use crate::mass::Mass;
 

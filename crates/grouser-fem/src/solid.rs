@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use grouser_geometry::{ElementOrder, MeshError, Pose, TetrahedralMesh, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::internal_force::Elements;
+use crate::elements::Elements;
 use crate::law::Law;
 use crate::loads::{Loads, Pressure};
 use crate::mass::{Mass, MassKind, consistent_element_mass};

@@ -16,7 +16,7 @@ pub use incomplete_cholesky::IncompleteCholesky;
 pub use nested_dissection::order as nested_dissection_order;
 pub use sparse_cholesky::{CholeskyError, SparseCholesky};
 
-use crate::element_state::ElementStates;
+use crate::element_state::{ElementStates, SlotGradient};
 use crate::material::Formulation;
 use crate::solid::Solid;
 
@@ -242,7 +242,9 @@ impl Solid {
         let mut external = vec![Vec3::zeros(); n];
         self.add_external_forces(fraction, &mut external);
         let mut internal = vec![Vec3::zeros(); n];
-        self.elements.update(&self.state.displacement, None).map_err(|i| {
+        let displacement = &self.state.displacement;
+        let forces = self.elements.update(displacement, None);
+        forces.and_then(|_| self.elements.refuse_inversion(displacement)).map_err(|i| {
             let element = self.mesh.element_label(i.element);
             StaticError::InvertedElement { element, volume_ratio: i.volume_ratio, fraction }
         })?;
@@ -271,26 +273,7 @@ impl Solid {
         let states =
             ElementStates::new(&self.mesh, &self.laws, &self.state.displacement, self.is_pressure_averaged());
         let slots = states.slot_gradients();
-        let slot_nodes: Vec<Vec<u32>> =
-            slots.iter().map(|s| s.entries.iter().map(|&(node, _)| node).collect()).collect();
-        let elements = (0..self.mesh.n_elements()).map(|e| self.mesh.element(e));
-        let groups = elements.chain(slot_nodes.iter().map(Vec::as_slice));
-        let mut k = BlockMatrix::with_pattern(self.mesh.nodes.len(), groups);
-        for e in 0..self.mesh.n_elements() {
-            let element = states.stiffness(e);
-            for (i, &a) in self.mesh.element(e).iter().enumerate() {
-                for (j, &b) in self.mesh.element(e).iter().enumerate() {
-                    *k.block_mut(a as usize, b as usize) += element.fixed_view::<3, 3>(3 * i, 3 * j);
-                }
-            }
-        }
-        for slot in &slots {
-            for (a, ga) in &slot.entries {
-                for (b, gb) in &slot.entries {
-                    *k.block_mut(*a as usize, *b as usize) += ga * gb.transpose() * slot.factor;
-                }
-            }
-        }
+        let mut k = assemble(&states, &slots);
         if self.settings.formulation != Formulation::BodyAttached {
             // Centrifugal forces grow with the position: −m (ω × (ω × u)) = m (ω² − ω ωᵀ) u.
             let w = self.loads.spin.angular_velocity;
@@ -321,6 +304,32 @@ impl Solid {
         let free = eigenvalues.iter().filter(|&&l| l <= 1e-9 * eigenvalues.max().max(1e-300)).count();
         if free > 0 { Err(StaticError::FreeRigidMotion { free }) } else { Ok(()) }
     }
+}
+
+/// Stiffness of all elements, and of the averaged nodal pressures that `slots` describe [N/m].
+pub(crate) fn assemble(states: &ElementStates<'_>, slots: &[SlotGradient]) -> BlockMatrix {
+    let mesh = states.mesh;
+    let slot_nodes: Vec<Vec<u32>> =
+        slots.iter().map(|s| s.entries.iter().map(|&(node, _)| node).collect()).collect();
+    let elements = (0..mesh.n_elements()).map(|e| mesh.element(e));
+    let groups = elements.chain(slot_nodes.iter().map(Vec::as_slice));
+    let mut k = BlockMatrix::with_pattern(mesh.nodes.len(), groups);
+    for e in 0..mesh.n_elements() {
+        let element = states.stiffness(e);
+        for (i, &a) in mesh.element(e).iter().enumerate() {
+            for (j, &b) in mesh.element(e).iter().enumerate() {
+                *k.block_mut(a as usize, b as usize) += element.fixed_view::<3, 3>(3 * i, 3 * j);
+            }
+        }
+    }
+    for slot in slots {
+        for (a, ga) in &slot.entries {
+            for (b, gb) in &slot.entries {
+                *k.block_mut(*a as usize, *b as usize) += ga * gb.transpose() * slot.factor;
+            }
+        }
+    }
+    k
 }
 
 /// Conjugate gradients from zero.
