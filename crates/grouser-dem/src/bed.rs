@@ -12,7 +12,7 @@ use grouser_contact::{
 use grouser_geometry::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Overlap over the smaller radius beyond which Hertz's law says nothing.
+/// Overlap over the smaller radius beyond which a run is given up, unless [`Bed::set_largest_overlap`] says otherwise.
 pub const LARGEST_OVERLAP: f64 = 0.3;
 
 /// What a bed is made of beside its grains.
@@ -43,6 +43,7 @@ pub struct Bed<L: ContactLaw<P::Real>, P: Precision = F64> {
     law: L,
     /// Coefficient of the damping of absolute velocities [N·s/m], and what it has taken so far [J].
     background: [f64; 2],
+    largest_overlap: f64,
     #[serde(skip, default = "InstructionSet::detect")]
     set: InstructionSet,
 }
@@ -77,6 +78,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
             is_too_deep: false,
             law,
             background: [0.0; 2],
+            largest_overlap: LARGEST_OVERLAP,
             set,
         })
     }
@@ -179,6 +181,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
             table: &self.table,
             time_step: P::Real::from_f64(time_step),
             has_ledger: self.settings.has_ledger,
+            largest_overlap: P::Real::from_f64(self.largest_overlap),
             set: self.set,
         };
         let Neighbours { slabs, is_ring, large, .. } = &mut self.neighbours;
@@ -223,6 +226,11 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         self.background[0] = coefficient;
     }
 
+    /// Overlap over the smaller radius beyond which the run is given up [-]; [`LARGEST_OVERLAP`] by default.
+    pub fn set_largest_overlap(&mut self, ratio: f64) {
+        self.largest_overlap = ratio;
+    }
+
     fn damp_background(&mut self, time_step: f64) {
         let [coefficient, taken] = &mut self.background;
         if *coefficient == 0.0 {
@@ -258,6 +266,16 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     /// Constants of every pair of materials.
     pub fn pair_table(&self) -> &PairTable<P::Real> {
         &self.table
+    }
+
+    /// Replaces the constants of every pair of materials; what contacts remember stays.
+    ///
+    /// # Errors
+    /// When a grain's material has no row.
+    pub fn set_pair_table(&mut self, table: PairTable<P::Real>) -> Result<(), BedError> {
+        BedError::check(&self.grains.spheres, &self.settings, table.n_materials())?;
+        self.table = table;
+        Ok(())
     }
 
     /// Turns the ledger on or off; turned on, it begins with nothing spent and with what the contacts store by now.

@@ -5,7 +5,6 @@
 //! instructions; the results are added to the grains in list order. No fused multiply-add is used, so every
 //! instruction set gives the same bytes.
 
-use crate::LARGEST_OVERLAP;
 #[cfg(target_arch = "x86_64")]
 use crate::quads;
 use crate::shared_grains::SharedGrains;
@@ -47,6 +46,8 @@ pub(crate) struct PassInput<'a, P: Precision, L> {
     pub table: &'a PairTable<P::Real>,
     pub time_step: P::Real,
     pub has_ledger: bool,
+    /// Overlap over the smaller radius beyond which the run is given up [-].
+    pub largest_overlap: P::Real,
     pub set: InstructionSet,
 }
 
@@ -84,6 +85,7 @@ struct Block<T: Real, L: ContactLaw<T>> {
     ledger: [Lanes<T>; 6],
     /// How far overlaps exceed the largest one that is allowed [m], one lane each.
     depth: Lanes<T>,
+    largest_overlap: T,
 }
 
 /// Instruction sets that the pass is compiled for; all give the same bytes.
@@ -240,7 +242,7 @@ fn pass<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool, const LEDGE
     slab: &mut Slab<P::Real, L::Memory>,
     input: &PassInput<P, L>,
 ) -> SlabSums {
-    let mut block = Block::<P::Real, L>::new(input.table);
+    let mut block = Block::<P::Real, L>::new(input.table, input.largest_overlap);
     let mut waiting = Waiting { places: [0; BLOCK], n: 0 };
     for word in 0..slab.touched.len() {
         let from = word * 64;
@@ -276,7 +278,7 @@ fn has_quads<P: Precision>() -> bool {
 }
 
 impl<T: Real, L: ContactLaw<T>> Block<T, L> {
-    fn new(table: &PairTable<T>) -> Self {
+    fn new(table: &PairTable<T>, largest_overlap: T) -> Self {
         let mut block = Self {
             difference: Default::default(),
             excess: Lanes([T::from_f64(0.5); BLOCK]),
@@ -294,6 +296,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             friction: Default::default(),
             ledger: Default::default(),
             depth: Default::default(),
+            largest_overlap,
         };
         for k in 0..BLOCK {
             block.difference[0].0[k] = T::ONE;
@@ -538,7 +541,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             }
             self.arm[0].0[k] = arms[0];
             self.arm[1].0[k] = arms[1];
-            let depth = overlap - T::from_f64(LARGEST_OVERLAP) * radii[0].min(radii[1]);
+            let depth = overlap - self.largest_overlap * radii[0].min(radii[1]);
             self.depth.0[k] = or_nothing(depth).max(self.depth.0[k]);
             if LEDGER {
                 let energy = response.energy;

@@ -1,6 +1,5 @@
 //! Analytic planes: floors and side walls.
 
-use crate::LARGEST_OVERLAP;
 use crate::cell_grid::to_f64;
 use crate::force_pass::{FrameOf, PassInput};
 use crate::slab::SlabSums;
@@ -74,7 +73,7 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
         input: &PassInput<P, L>,
     ) -> SlabSums {
         let (mut total, mut ledger) = (Vector::<f64>::ZERO, ContactLedger::default());
-        let mut is_too_deep = false;
+        let (mut is_too_deep, largest_overlap) = (false, input.largest_overlap.to_f64());
         let dt = input.time_step.to_f64();
         let normal = Vector::new(plane.normal.x, plane.normal.y, plane.normal.z).cast::<T>();
         for (&grain, memory) in self.grains.iter().zip(&mut self.memory) {
@@ -85,7 +84,7 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
                 *memory = M::default();
                 continue;
             }
-            is_too_deep |= overlap > LARGEST_OVERLAP * radius;
+            is_too_deep |= overlap > largest_overlap * radius;
             let (overlap, arm) = (T::from_f64(overlap), T::from_f64(radius - overlap));
             let effective_radius = T::from_f64(radius);
             let mut frame = <FrameOf<T, L>>::default();

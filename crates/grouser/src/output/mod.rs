@@ -6,9 +6,11 @@ pub mod chart;
 pub mod checkpoint;
 pub mod heat_map;
 mod pvd;
+pub mod raster;
 pub mod summary;
 mod table;
 mod vtp;
+pub mod vtu;
 
 pub use atomic::write_atomic;
 pub use pvd::Series;

@@ -18,7 +18,7 @@ pub struct PolyData<'a> {
     pub fields: Vec<(&'a str, PointField)>,
 }
 
-/// One value a point.
+/// One value a point or cell.
 #[derive(Debug, Clone)]
 pub enum PointField {
     /// Numbers.
@@ -45,20 +45,7 @@ impl PolyData<'_> {
         );
 
         let mut fields = String::new();
-        for (name, field) in &self.fields {
-            let text = &mut fields;
-            match field {
-                PointField::Scalar(v) => {
-                    file.array(text, name, "Float64", 1, v.iter().flat_map(|x| x.to_le_bytes()))
-                }
-                PointField::Vector(v) => {
-                    file.array(text, name, "Float64", 3, v.iter().flatten().flat_map(|x| x.to_le_bytes()));
-                }
-                PointField::Id(v) => {
-                    file.array(text, name, "Int64", 1, v.iter().flat_map(|x| x.to_le_bytes()))
-                }
-            }
-        }
+        self.fields.iter().for_each(|(name, field)| file.field(&mut fields, name, field));
 
         let mut cells = String::new();
         let per_cell = if is_cloud { 1 } else { 3 };
@@ -97,12 +84,26 @@ impl PolyData<'_> {
 
 /// The appended block: every array in pieces of 1 MiB, each compressed.
 #[derive(Default)]
-struct Appended {
-    block: Vec<u8>,
+pub(super) struct Appended {
+    pub block: Vec<u8>,
 }
 
 impl Appended {
-    fn array(
+    /// A field.
+    pub fn field(&mut self, xml: &mut String, name: &str, field: &PointField) {
+        match field {
+            PointField::Scalar(v) => {
+                self.array(xml, name, "Float64", 1, v.iter().flat_map(|x| x.to_le_bytes()))
+            }
+            PointField::Vector(v) => {
+                self.array(xml, name, "Float64", 3, v.iter().flatten().flat_map(|x| x.to_le_bytes()));
+            }
+            PointField::Id(v) => self.array(xml, name, "Int64", 1, v.iter().flat_map(|x| x.to_le_bytes())),
+        }
+    }
+
+    /// An array of numbers given as bytes.
+    pub fn array(
         &mut self,
         xml: &mut String,
         name: &str,
@@ -132,12 +133,12 @@ fn compress(data: &[u8]) -> Vec<u8> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use std::io::Read;
 
     /// Reads one appended array back, as a VTK reader does.
-    fn array(bytes: &[u8], name: &str) -> Vec<u8> {
+    pub fn array(bytes: &[u8], name: &str) -> Vec<u8> {
         let marker = b"<AppendedData encoding=\"raw\">\n_";
         let start = bytes.windows(marker.len()).position(|w| w == marker).unwrap() + marker.len();
         let xml = String::from_utf8_lossy(&bytes[..start]);

@@ -6,8 +6,9 @@ use super::on_bed::OnBed;
 use super::press::Pressing;
 use super::slip_sweep::SlipSweep;
 use super::study;
+use super::tire::TireRun;
 use super::{Ended, Law, Options, Progress, RunError, SetupError, WithLaw, with_law};
-use crate::scene::{Grains, Scenario, Soil};
+use crate::scene::{Grains, Scenario, Soil, Tool};
 use std::fs;
 
 /// Runs a scene into a folder.
@@ -40,6 +41,11 @@ impl WithLaw for OnGrains<'_> {
     fn with<L: Law>(self, law: L) -> Self::Output {
         let Self { driver, soil } = self;
         let scenario = driver.scenario;
-        driver.drive(|progress| OnBed::<L, Pressing<L>>::begin(scenario, soil, law, progress))
+        match scenario.tool {
+            Some(Tool::Tire(_)) => {
+                driver.drive(|progress| OnBed::<L, TireRun<L>>::begin(scenario, soil, law, progress))
+            }
+            _ => driver.drive(|progress| OnBed::<L, Pressing<L>>::begin(scenario, soil, law, progress)),
+        }
     }
 }

@@ -28,7 +28,7 @@ impl Indenter {
         match &scenario.tool {
             Some(Tool::Plates(plates)) => plates.diameters_m.len(),
             Some(Tool::Mesh(_)) => 1,
-            Some(Tool::RigidWheel(_) | Tool::Vehicle(_)) | None => 0,
+            Some(Tool::RigidWheel(_) | Tool::Vehicle(_) | Tool::Tire(_)) | None => 0,
         }
     }
 
@@ -64,7 +64,9 @@ impl Indenter {
                     material: mesh.material.clone(),
                 })
             }
-            Tool::RigidWheel(_) | Tool::Vehicle(_) => unreachable!("composed for a tool that is pressed"),
+            Tool::RigidWheel(_) | Tool::Vehicle(_) | Tool::Tire(_) => {
+                unreachable!("composed for a tool that is pressed")
+            }
         }
     }
 }

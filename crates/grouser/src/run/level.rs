@@ -33,6 +33,15 @@ fn top_of<P: Precision>(sphere: &Sphere<P>) -> f64 {
     sphere.position.z.to_f64() + sphere.radius.to_f64()
 }
 
+/// Highest point of any grain that a box around (`x`, `y`) with these half edges would meet on its way down [m].
+pub fn highest_below_box<P: Precision>(spheres: &[Sphere<P>], [x, y]: [f64; 2], half: [f64; 2]) -> f64 {
+    let is_below = |sphere: &&Sphere<P>| {
+        let reach = half.map(|edge| edge + sphere.radius.to_f64());
+        (sphere.position.x.to_f64() - x).abs() < reach[0] && (sphere.position.y.to_f64() - y).abs() < reach[1]
+    };
+    spheres.iter().filter(is_below).fold(0.0, |top, sphere| top.max(top_of(sphere)))
+}
+
 /// Mass of the grains over the volume between floor and surface [kg/m³].
 pub fn bulk_density<P: Precision>(spheres: &[Sphere<P>], size: [f64; 2], level: f64) -> f64 {
     spheres.iter().map(|sphere| sphere.mass.to_f64()).sum::<f64>() / (size[0] * size[1] * level)

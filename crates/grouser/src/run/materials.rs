@@ -48,8 +48,19 @@ impl<'a> Materials<'a> {
     /// # Errors
     /// When a constant is out of range, which a checked scenario excludes.
     pub fn table<T: Real>(&self) -> Result<PairTable<T>, ParameterError> {
+        self.table_with_friction_up_to(f64::INFINITY)
+    }
+
+    /// [`Self::table`] with no friction above `most` [-].
+    ///
+    /// # Errors
+    /// As [`Self::table`].
+    pub fn table_with_friction_up_to<T: Real>(&self, most: f64) -> Result<PairTable<T>, ParameterError> {
         let elastic: Vec<Material> = self.names.iter().map(|name| self.elastic(name)).collect();
-        PairTable::new(&elastic, self.tail(), |i, j| self.interaction(self.names[i], self.names[j]))
+        PairTable::new(&elastic, self.tail(), |i, j| {
+            let Interaction { restitution, friction } = self.interaction(self.names[i], self.names[j]);
+            Interaction { restitution, friction: friction.min(most) }
+        })
     }
 
     /// What becomes of the dashpot's attraction.

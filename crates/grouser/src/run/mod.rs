@@ -27,6 +27,7 @@ mod slip_sweep;
 mod study;
 mod study_outcome;
 mod time_step;
+mod tire;
 mod tool_ledger;
 mod vehicle_frames;
 
@@ -42,6 +43,7 @@ pub use on_bed::{OnBed, Pass};
 pub use press::Pressing;
 pub use progress::{Progress, Stage};
 pub use time_step::{COLLISION_FRACTION, TRAVEL_FRACTION, time_step};
+pub use tire::shape;
 pub use tool_ledger::ToolLedger;
 
 use grouser_contact::ParameterError;
@@ -68,6 +70,9 @@ pub enum SetupError {
     /// Soft ground, a vehicle on it, or its start.
     #[error("{0}")]
     Vehicle(String),
+    /// The tread of a tire.
+    #[error(transparent)]
+    Tire(#[from] tire::TreadError),
     /// The file of a tool's surface.
     #[error("{0}")]
     Mesh(String),

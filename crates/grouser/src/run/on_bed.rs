@@ -2,7 +2,9 @@
 //! own copy.
 
 use super::experiment::{Advanced, Outcome, Status};
-use super::{Experiment, Law, LawBed, Progress, RunError, SetupError, bed, cache, level, time_step};
+use super::{
+    Experiment, Law, LawBed, Materials, Progress, RunError, SetupError, bed, cache, level, time_step,
+};
 use crate::output::PolyData;
 use crate::output::summary::{self, Metric};
 use crate::scene::{Grains, Scenario};
@@ -35,7 +37,7 @@ pub trait Pass<L: Law>: Serialize + DeserializeOwned + Sized {
     ///
     /// # Errors
     /// When the motion has become meaningless.
-    fn advance(&mut self, scenario: &Scenario) -> Result<(), Failure>;
+    fn advance(&mut self, scenario: &Scenario) -> Result<(), Broken>;
 
     /// Steps made and steps in all.
     fn steps(&self) -> (u64, u64);
@@ -54,6 +56,21 @@ pub trait Pass<L: Law>: Serialize + DeserializeOwned + Sized {
 
     /// What has come of the passes so far, beyond what [`OnBed`] says about bed and time step.
     fn outcome(scenario: &Scenario, bed: &LawBed<L>, done: &[Self::Finished]) -> Outcome;
+}
+
+/// Why a pass cannot go on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Broken {
+    /// What happened, to which grain or element.
+    pub what: String,
+    /// What to do.
+    pub remedy: String,
+}
+
+impl From<Failure> for Broken {
+    fn from(failure: Failure) -> Self {
+        Self { what: failure.to_string(), remedy: failure.remedy().into() }
+    }
 }
 
 /// A bed and its passes, as a state.
@@ -139,6 +156,10 @@ impl<L: Law, P: Pass<L>> OnBed<L, P> {
                 SetupError::NotSettled { longest_s, ratio: settled.kinetic_energy_ratio, asked }.into()
             );
         }
+        if soil.settle.friction.is_some() {
+            let table = Materials::of(scenario).table().map_err(SetupError::from)?;
+            bed.set_pair_table(table).map_err(SetupError::from)?;
+        }
         cache::keep(&bed::key(scenario, soil, time_step), &**bed, settled);
         progress.note(&format!("the bed settled within {:.3} s of simulated time", settled.time_s));
         self.stage = Stage::Passing { settled, bed: bed.clone(), pass: None };
@@ -173,10 +194,10 @@ impl<L: Law, P: Pass<L>> Experiment for OnBed<L, P> {
             return self.end_pass(scenario);
         };
         let before = pass.steps().0;
-        pass.advance(scenario).map_err(|failure| {
+        pass.advance(scenario).map_err(|Broken { what, remedy }| {
             let n_steps = pass.steps().0;
-            let place = format!(", {}", pass.label());
-            RunError::numerics(&failure, n_steps, n_steps as f64 * time_step, &place)
+            let (time_s, place) = (n_steps as f64 * time_step, format!(", {}", pass.label()));
+            RunError::Numerics { what, remedy, step: n_steps, time_s, place }
         })?;
         let (now, all) = pass.steps();
         let n_steps = now - before;

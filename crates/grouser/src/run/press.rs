@@ -2,7 +2,7 @@
 
 use super::frames::{grains_frame, surface_frame};
 use super::indenter::Indenter;
-use super::on_bed::Pass;
+use super::on_bed::{Broken, Pass};
 use super::press_outcome;
 use super::rigid_tool::RigidTool;
 use super::tool_ledger::ToolLedger;
@@ -112,15 +112,15 @@ impl<L: Law> Pass<L> for Pressing<L> {
         })
     }
 
-    fn advance(&mut self, _: &Scenario) -> Result<(), Failure> {
-        let dt = self.time_step;
+    fn advance(&mut self, scenario: &Scenario) -> Result<(), Broken> {
+        let (dt, largest_overlap) = (self.time_step, scenario.dials.largest_overlap);
         let n_steps = (self.n_steps - self.steps_done)
             .min(self.steps_per_sample - self.steps_done % self.steps_per_sample);
         let Self { bed, tool, sum, steps_done, .. } = self;
         let (law, table) = (*bed.law(), bed.pair_table().clone());
         bed.run(n_steps, dt, |grains| {
             // The tool moves, meets the grains, and both receive their forces.
-            let load = tool.step(grains, &law, &table, dt)?;
+            let load = tool.step(grains, &law, &table, dt, largest_overlap)?;
             *sum += load;
             *steps_done += 1;
             Ok::<(), Failure>(())

@@ -4,7 +4,7 @@ use super::law::RealOf;
 use super::{Law, SetupError};
 use grouser_contact::{ContactLedger, PairTable};
 use grouser_coupling::{Step, SurfaceContacts};
-use grouser_dem::{Failure, Grains, LARGEST_OVERLAP};
+use grouser_dem::{Failure, Grains};
 use grouser_geometry::{Pose, TriangleSurface, Vec3, Wrench};
 use grouser_rigid::{BodySpec, Degree, Freedom, RigidBody, VelocityProfile};
 use serde::{Deserialize, Serialize};
@@ -42,13 +42,14 @@ impl<L: Law> RigidTool<L> {
     /// its moment about the origin of its surface.
     ///
     /// # Errors
-    /// When a grain is pressed further than the contact law means.
+    /// When a grain is pressed further than `largest_overlap` times its radius.
     pub fn step(
         &mut self,
         grains: &mut Grains<L::Precision>,
         law: &L,
         table: &PairTable<RealOf<L>>,
         time_step: f64,
+        largest_overlap: f64,
     ) -> Result<Wrench, Failure> {
         self.body.predict(time_step);
         let step = Step { law, table, time_step, fastest: grains.fastest() };
@@ -57,7 +58,7 @@ impl<L: Law> RigidTool<L> {
         let load = self.contacts.forces_on_turned(self.body.motion(), seen, loads, &step, |_| ());
         self.body.correct(&load, time_step);
         match self.contacts.deepest() {
-            Some(deepest) if deepest.depth > LARGEST_OVERLAP => {
+            Some(deepest) if deepest.depth > largest_overlap => {
                 let grouser_coupling::Deepest { grain, position, depth } = deepest;
                 Err(Failure::OverlapTooLarge { grain, position, depth })
             }

@@ -19,6 +19,9 @@ pub struct Dials {
     pub precision: Precision,
     /// Damping of every grain's absolute velocity [N·s/m]; 0 is off.
     pub background_damping_n_s_m: f64,
+    /// Overlap over the smaller radius at which the run is given up [-]. At 0.5 Hertz's force on a sphere in a half-space is 5 % too
+    /// large.
+    pub largest_overlap: f64,
 }
 
 impl Default for Dials {
@@ -30,6 +33,7 @@ impl Default for Dials {
             rotation: Rotation::default(),
             precision: Precision::default(),
             background_damping_n_s_m: 0.0,
+            largest_overlap: grouser_dem::LARGEST_OVERLAP,
         }
     }
 }

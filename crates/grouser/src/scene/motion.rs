@@ -1,6 +1,6 @@
 //! How tools move.
 
-use super::{Route, Slips};
+use super::{Roll, Route, Slips};
 use serde::{Deserialize, Serialize};
 
 /// Kinds of motion.
@@ -12,6 +12,8 @@ pub enum Motion {
     Slips(Slips),
     /// Along a route over soft ground.
     Route(Route),
+    /// Down until the ground carries a load, then rolling with a given slip.
+    Roll(Roll),
 }
 
 impl Motion {
@@ -21,6 +23,10 @@ impl Motion {
             Motion::Press(press) => press.speed_m_s,
             Motion::Slips(_) => 0.0,
             Motion::Route(route) => route.shown_speed_m_s,
+            // The top of a tire that slips moves faster than twice the speed.
+            Motion::Roll(roll) => {
+                roll.sinking_speed_m_s.max(roll.speed_m_s * (1.0 + 1.0 / (1.0 - roll.slip)))
+            }
         }
     }
 
@@ -30,6 +36,7 @@ impl Motion {
             Motion::Press(press) => (press.gap_m + press.depth_m) / press.speed_m_s,
             Motion::Route(route) => route.length() / route.shown_speed_m_s,
             Motion::Slips(_) => 0.0,
+            Motion::Roll(roll) => roll.duration(),
         }
     }
 }

@@ -131,11 +131,14 @@ pub struct Settle {
     pub energy_ratio: f64,
     /// Give up after this time [s].
     pub longest_s: f64,
+    /// Largest friction while the bed settles [-], of all pairs; afterwards every pair has its own. A small one packs the bed
+    /// densely, as tamping does; without it the bed is as loose as it falls.
+    pub friction: Option<f64>,
 }
 
 impl Default for Settle {
     fn default() -> Self {
-        Settle { energy_ratio: 1e-5, longest_s: 5.0 }
+        Settle { energy_ratio: 1e-5, longest_s: 5.0, friction: None }
     }
 }
 

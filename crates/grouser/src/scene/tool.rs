@@ -1,6 +1,6 @@
 //! What meets the ground.
 
-use super::{Mesh, RigidWheel, Vehicle};
+use super::{Mesh, RigidWheel, Tire, Vehicle};
 use serde::{Deserialize, Serialize};
 
 /// Kinds of tools.
@@ -14,6 +14,8 @@ pub enum Tool {
     RigidWheel(RigidWheel),
     /// A machine on wheels and tracks.
     Vehicle(Vehicle),
+    /// A tread on a rim, elastic or rigid.
+    Tire(Tire),
 }
 
 impl Tool {
@@ -22,6 +24,7 @@ impl Tool {
         match self {
             Tool::Plates(plates) => &plates.material,
             Tool::Mesh(mesh) => &mesh.material,
+            Tool::Tire(tire) => &tire.material,
             Tool::RigidWheel(_) | Tool::Vehicle(_) => "",
         }
     }

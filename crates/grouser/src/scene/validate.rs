@@ -6,6 +6,7 @@ mod grains;
 mod press;
 mod slips;
 mod study;
+mod tire;
 mod tool_room;
 
 use super::{Motion, Outputs, Scenario, Soil, Tool};
@@ -56,10 +57,13 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
             (Soil::PressureSinkage(ground), Tool::Vehicle(vehicle), Motion::Route(route)) => {
                 drive::validate(&mut check, ground, vehicle, route);
             }
+            (Soil::Grains(bed), Tool::Tire(tire), Motion::Roll(roll)) => {
+                tire::validate(&mut check, scenario, bed, (tire, roll));
+            }
             _ => check.fail(
                 "motion",
                 "no experiment puts this soil, tool and motion together",
-                "Grains with Plates or Mesh and Press; PlateTested with RigidWheel and Slips; PressureSinkage with Vehicle and Route",
+                "Grains with Plates or Mesh and Press, or with Tire and Roll; PlateTested with RigidWheel and Slips; PressureSinkage with Vehicle and Route",
                 "a tool or a motion of another kind of scene",
             ),
         },

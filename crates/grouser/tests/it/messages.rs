@@ -141,3 +141,32 @@ fn a_mesh_that_is_no_body_is_refused_at_its_line_and_a_good_one_is_pressed() {
     let (pressure, force_z) = (last[2], last[5]);
     assert!(force_z > 0.0 && (pressure * 0.03 * 0.016 / force_z - 1.0).abs() < 1e-9, "{rows}");
 }
+
+#[test]
+fn wrong_tires_are_refused_with_line_and_remedy() {
+    const TIRE: &str = include_str!("../../../../scenarios/tire.ron");
+    let cases = [
+        ("gap_m: 0.001", "gap_m: -0.02", "the tire starts inside the bed"),
+        ("size: \"165/65R13\"", "size: \"165x65\"", "is not understood"),
+        ("n_elements: 24000", "n_elements: 900", "too few"),
+        ("wall_thickness_m: 0.016", "wall_thickness_m: 0.0002", "slivers"),
+        ("inflation_pa: 1.4e5", "inflation_pa: -1.4e5", "is -140000"),
+        ("poisson: 0.45", "poisson: 0.5", "is 0.5"),
+        ("slip: 0.05", "slip: 5.0", "is 5"),
+        ("travel_m: 0.45", "travel_m: 4.5", "is 4.5"),
+        ("y: Walled", "y: Periodic", "a tire meets no images"),
+        ("largest_overlap: 0.5", "largest_overlap: 50", "is 50"),
+        ("friction: 0.02", "friction: -0.02", "is -0.02"),
+    ];
+    let home = tempfile::tempdir().unwrap();
+    let scene = home.path().join("tire.ron");
+    for (from, to, what) in cases {
+        assert!(TIRE.contains(from), "{from}");
+        fs::write(&scene, TIRE.replacen(from, to, 1)).unwrap();
+        let output = grouser(home.path(), &["check", &scene.display().to_string()]);
+        let message = errors(&output);
+        assert_eq!(output.status.code(), Some(2), "{to}: {message}");
+        assert!(message.contains("tire.ron:") && message.contains(what), "{to}: {message}");
+        assert!(message.contains("expected:"), "{to}: {message}");
+    }
+}

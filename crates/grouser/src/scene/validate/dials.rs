@@ -26,4 +26,12 @@ pub fn validate(check: &mut Check, dials: &Dials) {
         "zero or a positive number [N·s/m]",
         "a sign",
     );
+    let overlap = dials.largest_overlap;
+    check.require(
+        "dials.largest_overlap",
+        overlap,
+        overlap > 0.0 && overlap <= 0.5,
+        "in (0, 0.5]: beyond, Hertz's force is more than 5 % off",
+        "a length or a percentage; a bed that needs more is too soft for its load",
+    );
 }

@@ -103,6 +103,9 @@ fn settle(check: &mut Check, bed: &Grains) {
         "in (0, 1)",
         "0 asks for exact rest, which a sum of rounded numbers never reaches",
     );
+    if let Some(friction) = bed.settle.friction {
+        check.friction("soil.settle.friction", friction);
+    }
     check.positive("soil.settle.longest_s", bed.settle.longest_s, "a time [s]");
 }
 

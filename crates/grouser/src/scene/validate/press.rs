@@ -8,7 +8,7 @@ pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, tool: &Too
     check.material(scenario, "tool.material", tool.material());
     match tool {
         Tool::Plates(plates) => validate_plates(check, bed, plates),
-        Tool::RigidWheel(_) | Tool::Vehicle(_) => {}
+        Tool::RigidWheel(_) | Tool::Vehicle(_) | Tool::Tire(_) => {}
         Tool::Mesh(mesh) => {
             check.positive(
                 "tool.scale",
