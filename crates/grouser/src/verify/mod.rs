@@ -3,6 +3,7 @@
 mod angular;
 mod bodies;
 mod chung_ooi;
+mod coupling;
 mod precision;
 mod solids;
 mod two_bodies;
@@ -119,6 +120,9 @@ const GRAINS: &[(&str, Rows)] = &[
     ("tilting limits", angular::limits),
     ("tilting energy", angular::energy),
     ("angular grains at rest", angular::rest_and_extremes),
+    ("cut surfaces", coupling::cut_surfaces),
+    ("rolling over triangles", coupling::rolling_over_triangles),
+    ("bead on an elastic block", coupling::bead_on_block),
     ("mixed precision", precision::mixed),
     ("single precision", precision::single),
 ];

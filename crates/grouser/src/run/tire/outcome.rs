@@ -134,6 +134,8 @@ fn metrics(scenario: &Scenario, tire: &Rolled) -> Vec<Metric> {
     for (column, name, unit) in SPREADS {
         metrics.push(Metric::new(name, tire.spread(column).mean, unit));
     }
+    let over_load = tire.spread("drawbar_pull").mean / tire.spread("force_z").mean;
+    metrics.push(Metric::new("drawbar pull over vertical force", over_load, "-"));
     for (column, name) in [("sinkage", "sinkage at full load"), ("deflection", "deflection at full load")] {
         metrics.push(Metric::new(name, tire.when_sunk(column), "m"));
     }
