@@ -6,7 +6,7 @@
 use clap::Parser;
 use grouser_geometry::{HeightGrid, HeightShape, Vec3};
 use grouser_iscm::equilibrium::SearchSettings;
-use grouser_iscm::gear::{Belt, Hull, Shoe, ShoeShape, WheelShape};
+use grouser_iscm::gear::{Belt, Fit, Hull, Shoe, ShoeShape, WheelShape};
 use grouser_iscm::imprint::Plate;
 use grouser_iscm::pressure::{Linear, Noisy, PressureArray, PressureField, PressureLaw};
 use grouser_iscm::route::Route;
@@ -23,7 +23,7 @@ fn belt(wheels: Vec<usize>, circles: &[[f64; 3]], n_shoes: usize, width: f64) ->
         plates: vec![plate([-half, half], 0.03)],
         grousers: vec![plate([-0.02, 0.02], 0.06)],
     };
-    Belt { wheels, link_offset: 0.0, n_shoes, pitch, shoe: Shoe { mass: 10.0, shape }, joints: None }
+    Belt { wheels, link_offset: 0.0, n_shoes, pitch, shoe: Shoe { mass: 10.0, shape }, fit: Fit::Tight }
 }
 
 /// Pace of vehicles on soft ground.

@@ -10,6 +10,7 @@ use crate::polygon::{
     Corners, OneArray, PartialLoad, PolygonLoad, Reloaded, Stiff, SubTriangles, ThreeArrays, integrate,
 };
 use crate::terrain::{Terrain, Unloading};
+use crate::track::{DrawnTrack, Followed};
 
 /// How forces are integrated.
 #[derive(Clone, Debug)]
@@ -77,6 +78,8 @@ pub struct FootImprint {
     pub layers: Vec<Imprint>,
     /// Where moments are taken about \[m\].
     pub reference: Vec3,
+    /// Slack tracks: their shoes give way to the ground.
+    pub tracks: Vec<DrawnTrack>,
 }
 
 /// Present state of a node under one imprint.
@@ -111,8 +114,10 @@ impl FootImprint {
     ) -> FootLoad {
         let mut load =
             FootLoad { wrench: Wrench::default(), stiffness: Matrix6::zeros(), deepest: 0.0, n_polygons: 0 };
+        let followed = self.followed(terrain, motion);
+        load.stiffness += followed.stiffness;
         for layer in 0..self.layers.len() {
-            let (nodes, deepest) = self.nodes(layer, terrain, motion, integration.partial);
+            let (nodes, deepest) = self.nodes(layer, terrain, motion, &followed, integration.partial);
             if let Some(deepest) = deepest {
                 load.deepest = load.deepest.max(deepest);
                 self.load_layer(layer, &nodes, terrain, integration, &mut load, &mut listen);
@@ -124,8 +129,9 @@ impl FootImprint {
 
     /// Leaves the footprint: points inside the outline of the gear go down to its underside.
     pub fn stamp(&self, terrain: &mut Terrain, motion: &Pose) {
+        let followed = self.followed(terrain, motion);
         for layer in 0..self.layers.len() {
-            let (nodes, _) = self.nodes(layer, terrain, motion, PartialLoad::Proportional);
+            let (nodes, _) = self.nodes(layer, terrain, motion, &followed, PartialLoad::Proportional);
             let imprint = &self.layers[layer];
             let n_grid = terrain.grid().n_x();
             for j in 0..imprint.n_y {
@@ -139,18 +145,27 @@ impl FootImprint {
         }
     }
 
+    /// Rest of the slack tracks after the body moved.
+    fn followed(&self, terrain: &Terrain, motion: &Pose) -> Followed {
+        let mut followed = Followed::default();
+        self.tracks.iter().for_each(|track| track.follow(terrain, motion, &mut followed));
+        followed
+    }
+
     /// F1, F2: sinkage, height and share of every node of a layer, and the deepest sinkage if the gear touches the ground at all.
     fn nodes(
         &self,
         layer: usize,
         terrain: &Terrain,
         motion: &Pose,
+        followed: &Followed,
         partial: PartialLoad,
     ) -> (Vec<Node>, Option<f64>) {
         let imprint = &self.layers[layer];
         let turn: Matrix3<f64> = motion.rotation.to_rotation_matrix().matrix() - Matrix3::identity();
         let shift = motion.translation.vector;
         let is_moved = turn != Matrix3::zeros() || shift != Vec3::zeros();
+        let has_shifts = !followed.shifts.is_empty() && layer + 1 < self.layers.len();
         let n_grid = terrain.grid().n_x();
         let original = terrain.grid().heights();
         let mut nodes = vec![Node::default(); imprint.nodes.len()];
@@ -170,6 +185,11 @@ impl FootImprint {
                 if is_moved {
                     let [x, y] = imprint.position(i, j);
                     let d = turn * Vec3::new(x, y, h) + shift;
+                    h += d.z - gear.slope[0] * d.x - gear.slope[1] * d.y;
+                }
+                if has_shifts && let Some(shift) = followed.shift(gear.owner) {
+                    let [x, y] = imprint.position(i, j);
+                    let d = shift.at(Vec3::new(x, y, gear.height));
                     h += d.z - gear.slope[0] * d.x - gear.slope[1] * d.y;
                 }
                 let is_loaded = h < ground && gear.coverage > 0.0;
@@ -194,7 +214,7 @@ impl FootImprint {
 
     /// Share of a node's cell that the layers below leave free.
     #[inline(always)]
-    fn uncovered(&self, layer: usize, i: usize, j: usize) -> f64 {
+    pub(crate) fn uncovered(&self, layer: usize, i: usize, j: usize) -> f64 {
         let mut free = 1.0;
         for below in &self.layers[..layer] {
             let (a, b) = (i.wrapping_sub(below.i_0), j.wrapping_sub(below.j_0));
@@ -315,20 +335,24 @@ impl FootImprint {
         let arm = position - self.reference;
         load.wrench += Wrench { force, moment: arm.cross(&force) };
         let stiffness = area * answer.stiffness.max(0.0);
-        let turned = arm.cross(&normal);
-        let w = Vector6::new(normal.x, normal.y, normal.z, turned.x, turned.y, turned.z);
-        for (column, &w_j) in w.iter().enumerate() {
-            let s_j = stiffness * w_j;
-            for row in 0..=column {
-                load.stiffness[(row, column)] += s_j * w[row];
-            }
-        }
-        load.n_polygons += 1;
         let owners =
             [0, 1, 2].map(|k| imprint.nodes[(j + corners[k].1) * imprint.n_x + i + corners[k].0].owner);
         let held =
             |k: usize| -> f64 { (0..3).filter(|&l| owners[l] == owners[k]).map(|l| at[l].share).sum() };
         let owner = owners[(1..3).fold(0, |best, k| if held(k) > held(best) { k } else { best })];
+        // Slack tracks have answered for theirs.
+        let is_followed = layer + 1 < self.layers.len() && self.tracks.iter().any(|track| track.owns(owner));
+        if !is_followed {
+            let turned = arm.cross(&normal);
+            let w = Vector6::new(normal.x, normal.y, normal.z, turned.x, turned.y, turned.z);
+            for (column, &w_j) in w.iter().enumerate() {
+                let s_j = stiffness * w_j;
+                for row in 0..=column {
+                    load.stiffness[(row, column)] += s_j * w[row];
+                }
+            }
+        }
+        load.n_polygons += 1;
         let share = at.iter().map(|c| c.share).sum::<f64>() / 3.0;
         listen(&LoadedPolygon {
             layer,

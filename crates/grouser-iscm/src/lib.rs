@@ -48,6 +48,7 @@ pub mod run;
 pub mod rut;
 pub mod shear;
 pub mod terrain;
+pub mod track;
 pub mod vehicle;
 pub mod verification;
 pub mod wheel;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::gear::{Foot, GearError};
+use crate::gear::{Fit, Foot, GearError};
 use crate::mechanism::Mechanism;
 
 /// A vehicle ready to stand on ground.
@@ -55,5 +55,12 @@ impl Machine {
             gear.check().map_err(|reason| MachineError::Gear { foot, reason })?;
         }
         Ok(Self { mechanism, feet })
+    }
+
+    /// Which of the machine's slack belts are those of a foot, counted as in `Configuration::tracks`.
+    pub fn slack_belts(&self, foot: usize) -> std::ops::Range<usize> {
+        let n_slack = |foot: &Foot| foot.belts.iter().filter(|belt| belt.fit == Fit::Slack).count();
+        let before = self.feet[..foot].iter().map(n_slack).sum();
+        before..before + n_slack(&self.feet[foot])
     }
 }

@@ -82,6 +82,9 @@ pub struct Configuration {
     pub roll: f64,
     /// Joint coordinates of all bodies \[rad or m\]; the first is unused.
     pub joints: Vec<f64>,
+    /// Sections of slack belts below the axles, points (x, z) in their bodies' frames \[m\], in the order of feet and belts; empty
+    /// before the first rest.
+    pub tracks: Vec<Vec<[f64; 2]>>,
 }
 
 /// Why bodies make no machine.
@@ -249,6 +252,7 @@ impl Mechanism {
             pitch: 0.0,
             roll: 0.0,
             joints: vec![0.0; self.bodies.len()],
+            tracks: Vec::new(),
         }
     }
 

@@ -5,9 +5,10 @@
 use grouser_geometry::{Pose, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::contact::LoadedPolygon;
-use crate::gear::{Foot, Hull};
+use crate::contact::{FootImprint, LoadedPolygon};
+use crate::gear::{Fit, Foot, Hull};
 use crate::mechanism::GRAVITY;
+use crate::track::forces_on_wheels;
 
 /// Rolling resistance of one wheel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -51,25 +52,36 @@ pub fn rolling_force(forces: &[(Vec3, Vec3)], centre: Vec3, rolling: Vec3, radiu
 
 /// Rolling resistance of every wheel of a foot on a body at `pose`, whose centre moved along `rolling` (unit vector).
 ///
-/// `polygons` are the loaded polygons of the foot; `n_layers` its imprints, the last one that of the wheels.
+/// `polygons` are the loaded polygons of the foot on its `imprint`.
 pub fn foot_resistance(
     foot: &Foot,
     pose: &Pose,
     travel: f64,
     rolling: Vec3,
     polygons: &[LoadedPolygon],
-    n_layers: usize,
+    imprint: &FootImprint,
 ) -> Vec<WheelResistance> {
+    let n_layers = imprint.layers.len();
     let mut forces: Vec<Vec<(Vec3, Vec3)>> = vec![Vec::new(); foot.wheels.len()];
     // W1: polygons under the wheels themselves.
     for p in polygons.iter().filter(|p| p.layer + 1 == n_layers) {
         forces[p.owner as usize].push((p.force, p.position));
     }
     // W2: shoes with their weight; those on a wheel act on it, those between wheels hang on both ends.
+    let (mut first, mut tracks) = (0, imprint.tracks.iter());
     for belt in &foot.belts {
         let mut on_shoe = vec![Vec3::new(0.0, 0.0, -belt.shoe.mass * GRAVITY); belt.n_shoes];
         for p in polygons.iter().filter(|p| p.layer + 1 < n_layers) {
-            on_shoe[p.owner as usize] += p.force;
+            if let Some(shoe) = (p.owner as usize).checked_sub(first).filter(|&shoe| shoe < belt.n_shoes) {
+                on_shoe[shoe] += p.force;
+            }
+        }
+        first += belt.n_shoes;
+        if belt.fit == Fit::Slack
+            && let Some(track) = tracks.next()
+        {
+            forces_on_wheels(belt, &foot.wheels, track, pose, &on_shoe, &mut forces);
+            continue;
         }
         let circles = belt.circles(&foot.wheels);
         let (hull, y) = (Hull::around(&circles), belt.lateral(&foot.wheels));

@@ -207,8 +207,8 @@ impl RunState {
                     centres[foot].iter().zip(&self.wheel_centres[foot]).map(|(a, b)| a - b).sum();
                 let pose = &rest.frozen.poses[machine.feet[foot].body];
                 let rolling = moved.try_normalize(1e-12).unwrap_or_else(|| pose.rotation * Vec3::x()); // P2 Eq. (15)
-                let n_layers = rest.frozen.imprints[foot].layers.len();
-                foot_resistance(&machine.feet[foot], pose, distance, rolling, &polygons[foot], n_layers)
+                let imprint = &rest.frozen.imprints[foot];
+                foot_resistance(&machine.feet[foot], pose, distance, rolling, &polygons[foot], imprint)
             })
             .collect();
         StepResult {

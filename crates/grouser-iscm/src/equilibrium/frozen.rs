@@ -49,7 +49,11 @@ impl Frozen {
         let imprints = machine
             .feet
             .par_iter()
-            .map(|gear| gear.imprint(terrain, &poses[gear.body], travel, integration.partial))
+            .enumerate()
+            .map(|(foot, gear)| {
+                let shapes = at.tracks.get(machine.slack_belts(foot)).unwrap_or_default();
+                gear.imprint_with(terrain, &poses[gear.body], travel, integration.partial, shapes)
+            })
             .collect();
         Ok(Self { at: at.clone(), poses, imprints, integration })
     }
@@ -91,7 +95,27 @@ impl Frozen {
         tolerance: f64,
     ) -> (Configuration, usize) {
         let (q, n_evaluations) = newton::settle_and_lift(self, machine, terrain, tolerance);
-        (self.moved(machine, &q), n_evaluations)
+        let mut at = self.moved(machine, &q);
+        self.carry_tracks(machine, terrain, &mut at, 1.0);
+        (at, n_evaluations)
+    }
+
+    /// Sets the shapes of slack tracks a `share` of the way to where they rest after the bodies moved to `at`.
+    pub fn carry_tracks(&self, machine: &Machine, terrain: &Terrain, at: &mut Configuration, share: f64) {
+        if self.imprints.iter().all(|imprint| imprint.tracks.is_empty()) {
+            return;
+        }
+        let poses = machine.mechanism.poses(at);
+        at.tracks = self
+            .imprints
+            .par_iter()
+            .enumerate()
+            .flat_map_iter(|(foot, imprint)| {
+                let body = machine.feet[foot].body;
+                let moved = motion(&self.poses[body], &poses[body]);
+                imprint.tracks.iter().map(move |track| track.shape(terrain, &moved, share))
+            })
+            .collect();
     }
 
     /// Motion of a foot's body from where its imprint was drawn to a configuration nearby.

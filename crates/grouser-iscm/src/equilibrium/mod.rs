@@ -205,6 +205,7 @@ pub fn equilibrium(
         }
         let gone: Vec<f64> = before.iter().zip(&q).map(|(a, b)| a + share * (b - a)).collect();
         machine.mechanism.set_dofs(&mut at, &gone);
+        frozen.carry_tracks(machine, terrain, &mut at, share);
         let at_stop: Vec<String> = stops.iter().map(|&d| machine.mechanism.dof_name(d).to_string()).collect();
         for (axis, angle) in [("pitch", at.pitch), ("roll", at.roll)] {
             if angle.abs() > TURNED_OVER {

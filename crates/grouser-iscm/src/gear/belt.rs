@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{GearError, Hull, Wheel, positive};
 use crate::imprint::{Imprint, Plate};
+use crate::track::{DrawnTrack, tight_pitch};
 
 /// What a shoe shows to the ground.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,8 +52,21 @@ pub struct Belt {
     pub pitch: f64,
     /// The shoes.
     pub shoe: Shoe,
-    /// Joints (x, z) in the body's frame \[m\] where the belt hangs freely; none for a tight one.
-    pub joints: Option<Vec<[f64; 2]>>,
+    /// How it sits on its wheels.
+    pub fit: Fit,
+}
+
+/// Largest pitch of a slack belt over that with which it lies tight; beyond, links below lie loose and nothing says where.
+const MOST_SLACK: f64 = 1.0151;
+
+/// How a belt sits on its wheels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Fit {
+    /// It follows the shortest way around its wheels, as stiff as they are between them.
+    #[default]
+    Tight,
+    /// Stiff links that are held by the tops of the wheels, hang between them, and give way to the ground below.
+    Slack,
 }
 
 impl Shoe {
@@ -92,47 +106,69 @@ impl Belt {
         self.wheels.iter().map(|&w| wheels[w].centre.y).sum::<f64>() / self.wheels.len().max(1) as f64
     }
 
-    pub(super) fn check(&self, wheels: &[Wheel]) -> Result<(), GearError> {
-        if let Some(&wheel) = self.wheels.iter().find(|&&w| w >= wheels.len()) {
-            return Err(GearError::NoSuchWheel { wheel, n_wheels: wheels.len() });
+    pub(super) fn check(&self, wheels_of: &[Wheel]) -> Result<(), GearError> {
+        if let Some(&wheel) = self.wheels.iter().find(|&&w| w >= wheels_of.len()) {
+            return Err(GearError::NoSuchWheel { wheel, n_wheels: wheels_of.len() });
         }
         positive("belt", "number of wheels", self.wheels.len() as f64)?;
         positive("belt", "pitch", self.pitch)?;
         positive("belt", "number of shoes", self.n_shoes as f64)?;
         positive("shoe", "width", 2.0 * self.shoe.half_width())?;
-        let needed = Hull::around(&self.circles(wheels)).length();
+        let needed = Hull::around(&self.circles(wheels_of)).length();
         let length = self.pitch * self.n_shoes as f64;
-        let is_fitting = if self.joints.is_some() {
-            length >= needed * 0.99
-        } else {
-            (length / needed - 1.0).abs() <= 0.01
-        };
-        if is_fitting {
+        if self.fit == Fit::Slack {
+            let two = "two wheels or more: a chain around one wheel is tight";
+            if self.wheels.len() < 2 {
+                return Err(GearError::Size {
+                    part: "slack belt",
+                    quantity: "number of wheels",
+                    value: 1.0,
+                    expected: two,
+                });
+            }
+            let tight = tight_pitch(&self.circles(wheels_of), self.n_shoes);
+            if !(1.0 - 1e-9..=MOST_SLACK).contains(&(self.pitch / tight)) {
+                return Err(GearError::SlackPitch { pitch: self.pitch, tight, longest: MOST_SLACK * tight });
+            }
+            return Ok(());
+        }
+        if (length / needed - 1.0).abs() <= 0.01 {
             Ok(())
         } else {
             Err(GearError::BeltLength { n_shoes: self.n_shoes, pitch: self.pitch, length, needed })
         }
     }
 
-    /// Joints of the belt (x, z) in the body's frame \[m\]: free ones as they hang, tight ones spread evenly over the way around
-    /// the wheels after the belt has run by `travel` \[m\].
-    pub fn joints(&self, wheels: &[Wheel], travel: f64) -> Vec<[f64; 2]> {
-        match &self.joints {
-            Some(joints) => joints.clone(),
-            None => {
-                let hull = Hull::around(&self.circles(wheels));
-                let pitch = hull.length() / self.n_shoes as f64;
-                (0..self.n_shoes).map(|k| hull.at(k as f64 * pitch - travel).position).collect()
-            }
+    /// Joints of a tight belt (x, z) in the body's frame \[m\], spread evenly over the way around the wheels after the belt has run by
+    /// `travel` \[m\].
+    pub fn tight_joints(&self, wheels: &[Wheel], travel: f64) -> Vec<[f64; 2]> {
+        let hull = Hull::around(&self.circles(wheels));
+        let pitch = hull.length() / self.n_shoes as f64;
+        (0..self.n_shoes).map(|k| hull.at(k as f64 * pitch - travel).position).collect()
+    }
+
+    /// Joints of the belt on a body at `pose`; a slack one has its lower section along `shape`, an earlier one.
+    pub fn joints(
+        &self,
+        wheels: &[Wheel],
+        pose: &Pose,
+        travel: f64,
+        shape: Option<&[[f64; 2]]>,
+    ) -> Vec<[f64; 2]> {
+        match self.fit {
+            Fit::Tight => self.tight_joints(wheels, travel),
+            Fit::Slack => DrawnTrack::new(self, wheels, pose, travel, shape, 0).joints,
         }
     }
 
-    /// Draws all shoes on a body at `pose`.
+    /// Draws all shoes on a body at `pose`; a slack belt has its joints given. Owners count from `first`.
     pub(super) fn draw(
         &self,
         wheels: &[Wheel],
         pose: &Pose,
         travel: f64,
+        slack: Option<&[[f64; 2]]>,
+        first: u16,
         grousers: &mut Imprint,
         shoes: &mut Imprint,
     ) {
@@ -143,7 +179,7 @@ impl Belt {
             pose * Pose::from_parts(Vec3::new(x, y, z).into(), turn)
         };
         if let ShoeShape::Band { width, depth, n_pieces } = self.shoe.shape
-            && self.joints.is_none()
+            && slack.is_none()
         {
             let hull = Hull::around(&self.circles(wheels));
             let n = self.n_shoes * n_pieces.max(1);
@@ -152,17 +188,17 @@ impl Belt {
                 let point = hull.at((k as f64 + 0.5) * length - travel);
                 let half = length / 2.0 * (1.0 + depth / point.radius);
                 let plate = Plate { along: [-half, half], across: [-width / 2.0, width / 2.0], depth };
-                let owner = (k / n_pieces.max(1)) as u16;
+                let owner = first + (k / n_pieces.max(1)) as u16;
                 shoes.draw_plate(&frame(point.position, point.direction), &plate, owner);
             }
             return;
         }
-        let joints = self.joints(wheels, travel);
+        let joints = slack.map_or_else(|| self.tight_joints(wheels, travel), <[_]>::to_vec);
         for (owner, a) in joints.iter().enumerate() {
             let b = joints[(owner + 1) % joints.len()];
             let middle = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
             let at = frame(middle, (b[1] - a[1]).atan2(b[0] - a[0]));
-            let owner = owner as u16;
+            let owner = first + owner as u16;
             match &self.shoe.shape {
                 ShoeShape::Steel { plates, grousers: deep } => {
                     plates.iter().for_each(|plate| shoes.draw_plate(&at, plate, owner));

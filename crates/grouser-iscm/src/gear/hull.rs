@@ -13,10 +13,29 @@ pub struct HullPoint {
     pub radius: f64,
 }
 
+/// A piece of the way; directions as in [`HullPoint`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Piece {
-    Arc { centre: [f64; 2], radius: f64, from: f64, angle: f64 },
-    Line { from: [f64; 2], direction: f64, length: f64 },
+pub enum Piece {
+    /// Around a wheel, from a direction on by an angle \[rad\].
+    Arc {
+        /// Centre (x, z) \[m\].
+        centre: [f64; 2],
+        /// Radius \[m\].
+        radius: f64,
+        /// Direction at its beginning \[rad\].
+        from: f64,
+        /// Angle \[rad\].
+        angle: f64,
+    },
+    /// Between two wheels.
+    Line {
+        /// Beginning (x, z) \[m\].
+        from: [f64; 2],
+        /// Direction \[rad\].
+        direction: f64,
+        /// Length \[m\].
+        length: f64,
+    },
 }
 
 /// Closed convex way around circles, run anticlockwise: forwards below, backwards above.
@@ -89,6 +108,11 @@ impl Hull {
         self.length
     }
 
+    /// Its pieces, from s = 0 on.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
     /// The point at `s` \[m\] along the way; s = 0 lies lowest on the foremost of the lowest circles.
     pub fn at(&self, s: f64) -> HullPoint {
         let mut s = s.rem_euclid(self.length);
@@ -98,29 +122,35 @@ impl Hull {
                 s -= piece.length();
                 continue;
             }
-            return match *piece {
-                Piece::Arc { centre, radius, from, .. } => {
-                    let direction = from + s / radius;
-                    let (sin, cos) = direction.sin_cos();
-                    HullPoint {
-                        position: [centre[0] + radius * sin, centre[1] - radius * cos],
-                        direction,
-                        radius,
-                    }
-                }
-                Piece::Line { from, direction, .. } => HullPoint {
-                    position: [from[0] + s * direction.cos(), from[1] + s * direction.sin()],
-                    direction,
-                    radius: f64::INFINITY,
-                },
-            };
+            return piece.at(s);
         }
         HullPoint { position: [0.0; 2], direction: 0.0, radius: f64::INFINITY }
     }
 }
 
 impl Piece {
-    fn length(&self) -> f64 {
+    /// The point at `s` \[m\] along the piece.
+    pub fn at(&self, s: f64) -> HullPoint {
+        match *self {
+            Self::Arc { centre, radius, from, .. } => {
+                let direction = from + s / radius;
+                let (sin, cos) = direction.sin_cos();
+                HullPoint {
+                    position: [centre[0] + radius * sin, centre[1] - radius * cos],
+                    direction,
+                    radius,
+                }
+            }
+            Self::Line { from, direction, .. } => HullPoint {
+                position: [from[0] + s * direction.cos(), from[1] + s * direction.sin()],
+                direction,
+                radius: f64::INFINITY,
+            },
+        }
+    }
+
+    /// Length \[m\].
+    pub fn length(&self) -> f64 {
         match *self {
             Self::Arc { radius, angle, .. } => radius * angle,
             Self::Line { length, .. } => length,

@@ -9,14 +9,15 @@ use grouser_geometry::{Pose, Vec3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-pub use belt::{Belt, Shoe, ShoeShape};
-pub use hull::{Hull, HullPoint};
+pub use belt::{Belt, Fit, Shoe, ShoeShape};
+pub use hull::{Hull, HullPoint, Piece};
 pub use wheel::{TreadPattern, TreadedWheel, Wheel, WheelShape, treaded_wheel};
 
 use crate::contact::FootImprint;
 use crate::imprint::Imprint;
 use crate::polygon::PartialLoad;
 use crate::terrain::Terrain;
+use crate::track::DrawnTrack;
 
 /// Wheels and belts that stand on one body: a wheel, or a bogie with its track.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,6 +52,18 @@ pub enum GearError {
         wheel: usize,
         /// Wheels of the foot.
         n_wheels: usize,
+    },
+    /// Links too short or far too long for a slack belt.
+    #[error(
+        "the links of a slack belt have a pitch of {pitch:.5} m; expected {tight:.5} m, where they would lie tight, to {longest:.5} m"
+    )]
+    SlackPitch {
+        /// Their pitch \[m\].
+        pitch: f64,
+        /// Where they lie tight \[m\].
+        tight: f64,
+        /// Longest \[m\].
+        longest: f64,
     },
     /// Shoes that do not fill the belt.
     #[error(
@@ -94,6 +107,18 @@ impl Foot {
     ///
     /// Owners are wheel numbers in the layer of wheels, shoe numbers in the others.
     pub fn imprint(&self, terrain: &Terrain, pose: &Pose, travel: f64, partial: PartialLoad) -> FootImprint {
+        self.imprint_with(terrain, pose, travel, partial, &[])
+    }
+
+    /// The same with the lower sections of slack belts, in their order, along earlier shapes; those not given are taken as tight.
+    pub fn imprint_with(
+        &self,
+        terrain: &Terrain,
+        pose: &Pose,
+        travel: f64,
+        partial: PartialLoad,
+        shapes: &[Vec<[f64; 2]>],
+    ) -> FootImprint {
         let grid = terrain.grid();
         let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
         let depth = self.belts.iter().map(|b| b.shoe.depth()).fold(0.0, f64::max);
@@ -120,10 +145,19 @@ impl Foot {
             .fold(f64::NEG_INFINITY, f64::max);
         let blank = || Imprint::new(grid, min, max, highest + HEADROOM, partial);
         let mut layers = Vec::with_capacity(3);
+        let mut tracks = Vec::new();
         if !self.belts.is_empty() {
             let (mut grousers, mut shoes) = (blank(), blank());
+            let mut first = 0;
             for belt in &self.belts {
-                belt.draw(&self.wheels, pose, travel, &mut grousers, &mut shoes);
+                let track = (belt.fit == Fit::Slack).then(|| {
+                    let shape = shapes.get(tracks.len()).map(Vec::as_slice);
+                    DrawnTrack::new(belt, &self.wheels, pose, travel, shape, first)
+                });
+                let joints = track.as_ref().map(|track| track.joints.as_slice());
+                belt.draw(&self.wheels, pose, travel, joints, first, &mut grousers, &mut shoes);
+                tracks.extend(track);
+                first += belt.n_shoes as u16;
             }
             layers.extend([grousers, shoes].into_iter().filter(|layer| !layer.is_empty()));
         }
@@ -135,6 +169,11 @@ impl Foot {
         for layer in &mut layers {
             layer.carry_edges(grid);
         }
-        FootImprint { layers, reference: pose.translation.vector }
+        let mut drawn = FootImprint { layers, reference: pose.translation.vector, tracks: Vec::new() };
+        for track in &mut tracks {
+            track.find_touches(&drawn, terrain);
+        }
+        drawn.tracks = tracks;
+        drawn
     }
 }

@@ -2,7 +2,7 @@
 
 use grouser_geometry::{HeightGrid, Vec3};
 
-use crate::gear::{Belt, Foot, Shoe, ShoeShape, Wheel, WheelShape};
+use crate::gear::{Belt, Fit, Foot, Shoe, ShoeShape, Wheel, WheelShape};
 use crate::machine::Machine;
 use crate::mechanism::{Body, Joint, Mechanism};
 use crate::pressure::{Linear, PressureArray, PressureField, PressureLaw};
@@ -43,7 +43,7 @@ pub fn component_vehicle(mass: f64, has_tracks: bool, lateral: f64) -> Machine {
 fn band_track(mass: f64) -> Belt {
     let shape = ShoeShape::Band { width: 0.6, depth: 0.02, n_pieces: 12 };
     let shoe = Shoe { mass, shape };
-    Belt { wheels: vec![0, 1], link_offset: 0.0, n_shoes: 60, pitch: 0.102_360, shoe, joints: None }
+    Belt { wheels: vec![0, 1], link_offset: 0.0, n_shoes: 60, pitch: 0.102_360, shoe, fit: Fit::Tight }
 }
 
 /// A bogie for itself, `mass` \[kg\] on its pivot; with shoes of a given mass it has a track.

@@ -26,7 +26,7 @@ pub fn bogie_rolling_down() -> Vec<Row> {
     let mut polygons = Vec::new();
     imprint.load(&terrain, &Pose::identity(), &settings.integration(), |p| polygons.push(*p));
     let rolling = turn * Vec3::x();
-    let wheels = foot_resistance(&foot, &pose, 0.0, rolling, &polygons, imprint.layers.len());
+    let wheels = foot_resistance(&foot, &pose, 0.0, rolling, &polygons, &imprint);
     let row = |(k, w): (usize, &WheelResistance)| Row {
         case,
         quantity: format!("coefficient of wheel {k}"),
@@ -148,7 +148,7 @@ pub fn bogie_with_a_track() -> Vec<Row> {
         let imprint = foot.imprint(&terrain, &pose, 0.0, settings.partial);
         let mut polygons = Vec::new();
         imprint.load(&terrain, &Pose::identity(), &settings.integration(), |p| polygons.push(*p));
-        let wheels = foot_resistance(foot, &pose, 0.0, rolling, &polygons, imprint.layers.len());
+        let wheels = foot_resistance(foot, &pose, 0.0, rolling, &polygons, &imprint);
         let exact = tracked_reference(angle, height, width, stiffness, mass);
         for (k, wheel) in wheels.iter().enumerate() {
             let [force, normal, vertical] = exact[k];

@@ -4,7 +4,7 @@ use grouser_geometry::{Pose, Vec3};
 
 use super::{Row, flat_ground};
 use crate::equilibrium::SearchSettings;
-use crate::gear::{Belt, Foot, Shoe, ShoeShape, Wheel};
+use crate::gear::{Belt, Fit, Foot, Shoe, ShoeShape, Wheel};
 use crate::pressure::{Bekker, PressureLaw};
 use crate::shear::{JanosiHanamoto, Motion, foot_traction};
 use crate::terrain::{Terrain, Unloading};
@@ -168,7 +168,7 @@ pub fn driven_track() -> Vec<Row> {
         n_shoes: 60,
         pitch: 0.102_360,
         shoe: Shoe { mass: 10.0, shape },
-        joints: None,
+        fit: Fit::Tight,
     };
     let foot = Foot { body: 0, wheels, belts: vec![belt] };
     let law = JanosiHanamoto {

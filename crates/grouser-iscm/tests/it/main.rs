@@ -6,4 +6,5 @@ mod multi_pass;
 mod random_starts;
 mod restart;
 mod single_wheel;
+mod slack_tracks;
 mod verification_cases;

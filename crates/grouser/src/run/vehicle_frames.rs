@@ -2,7 +2,7 @@
 
 use crate::output::{PointField, PolyData};
 use grouser_geometry::{Orientation, Pose, TriangleSurface, Vec3};
-use grouser_iscm::gear::{Belt, Foot, ShoeShape, WheelShape};
+use grouser_iscm::gear::{Belt, Fit, Foot, ShoeShape, WheelShape};
 use grouser_iscm::imprint::Plate;
 use grouser_iscm::machine::Machine;
 use grouser_iscm::run::{RunSettings, RunState};
@@ -20,7 +20,8 @@ pub fn frames(
     let poses = machine.mechanism.poses(&state.configuration);
     let mut gear = Shown::default();
     for (number, foot) in machine.feet.iter().enumerate() {
-        gear.foot(foot, &poses[foot.body], travel, number);
+        let shapes = state.configuration.tracks.get(machine.slack_belts(number)).unwrap_or_default();
+        gear.foot(foot, &poses[foot.body], travel, shapes, number);
     }
     vec![("ground", ground(state)), ("machine", gear.into_frame())]
 }
@@ -72,7 +73,7 @@ impl Shown {
         self.triangles.extend(surface.triangles.iter().map(|t| t.map(|v| first + v)));
     }
 
-    fn foot(&mut self, foot: &Foot, body: &Pose, travel: f64, number: usize) {
+    fn foot(&mut self, foot: &Foot, body: &Pose, travel: f64, shapes: &[Vec<[f64; 2]>], number: usize) {
         for wheel in &foot.wheels {
             let spin = Orientation::from_axis_angle(&Vec3::y_axis(), travel / wheel.radius);
             let pose = body * Pose::from_parts(wheel.centre.into(), spin);
@@ -87,13 +88,15 @@ impl Shown {
                 WheelShape::Surface(surface) => self.add(surface, &pose, number),
             }
         }
+        let mut shapes = shapes.iter();
         for belt in &foot.belts {
-            self.belt(belt, foot, body, travel, number);
+            let shape = (belt.fit == Fit::Slack).then(|| shapes.next()).flatten();
+            let joints = belt.joints(&foot.wheels, body, travel, shape.map(Vec::as_slice));
+            self.belt(belt, foot, body, &joints, number);
         }
     }
 
-    fn belt(&mut self, belt: &Belt, foot: &Foot, body: &Pose, travel: f64, number: usize) {
-        let joints = belt.joints(&foot.wheels, travel);
+    fn belt(&mut self, belt: &Belt, foot: &Foot, body: &Pose, joints: &[[f64; 2]], number: usize) {
         let y = belt.lateral(&foot.wheels);
         for (n, a) in joints.iter().enumerate() {
             let b = joints[(n + 1) % joints.len()];

@@ -1,9 +1,10 @@
 //! A vehicle of frames joined in a line, on wheels, bogies, chains and tracks.
 
 use grouser_geometry::Vec3;
-use grouser_iscm::gear::{Belt, Hull, Shoe, ShoeShape, WheelShape};
+use grouser_iscm::gear::{Belt, Fit, Hull, Shoe, ShoeShape, WheelShape};
 use grouser_iscm::imprint::Plate;
 use grouser_iscm::machine::Machine;
+use grouser_iscm::track::tight_pitch;
 use grouser_iscm::vehicle::{Articulation, Axle, Component, vehicle};
 use serde::{Deserialize, Serialize};
 
@@ -78,7 +79,7 @@ pub struct AxlePair {
     pub belts: Vec<BeltSet>,
 }
 
-/// A tight belt of shoes around one wheel or several.
+/// A belt of shoes around one wheel or several.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BeltSet {
@@ -102,6 +103,10 @@ pub struct BeltSet {
     /// Depth of the grouser's edge outside the wheel [m].
     #[serde(default)]
     pub grouser_depth_m: f64,
+    /// By which share the links are longer than when they lie tight [-]: it then hangs above and gives way to the ground below; none for
+    /// a belt that is as stiff between its wheels as they are.
+    #[serde(default)]
+    pub slack: Option<f64>,
 }
 
 /// Joint between two frames.
@@ -187,7 +192,10 @@ impl BeltSet {
         };
         let circles: Vec<[f64; 3]> =
             self.wheels.iter().map(|wheel| [centre(wheel), 0.0, axle.wheel_radius_m]).collect();
-        let pitch = Hull::around(&circles).length() / self.n_shoes.max(1) as f64;
+        let (pitch, fit) = match self.slack {
+            None => (Hull::around(&circles).length() / self.n_shoes.max(1) as f64, Fit::Tight),
+            Some(slack) => (tight_pitch(&circles, self.n_shoes) * (1.0 + slack), Fit::Slack),
+        };
         let half_width = self.shoe_width_m / 2.0;
         let plate =
             |half: f64, depth| Plate { along: [-half, half], across: [-half_width, half_width], depth };
@@ -199,13 +207,6 @@ impl BeltSet {
         let plates = vec![plate(self.plate_share * pitch / 2.0, self.plate_depth_m)];
         let shape = ShoeShape::Steel { plates, grousers };
         let shoe = Shoe { mass: self.shoe_mass_kg, shape };
-        Belt {
-            wheels: self.wheels.clone(),
-            link_offset: 0.0,
-            n_shoes: self.n_shoes,
-            pitch,
-            shoe,
-            joints: None,
-        }
+        Belt { wheels: self.wheels.clone(), link_offset: 0.0, n_shoes: self.n_shoes, pitch, shoe, fit }
     }
 }
