@@ -56,8 +56,8 @@ pub struct Belt {
     pub fit: Fit,
 }
 
-/// Largest pitch of a slack belt over that with which it lies tight; beyond, links below lie loose and nothing says where.
-const MOST_SLACK: f64 = 1.0151;
+/// Largest pitch of a slack belt over that with which it lies tight; beyond, a track would come off.
+const MOST_SLACK: f64 = 1.05;
 
 /// How a belt sits on its wheels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

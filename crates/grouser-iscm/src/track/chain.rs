@@ -6,7 +6,9 @@ use nalgebra::{Matrix6, SMatrix, Vector6};
 const STIFF: f64 = 1e9;
 /// Pull of links with which the search begins \[N\].
 const FIRST_PULL: f64 = 1e4;
-/// Push of a wheel per distance by which a joint may have come off it \[N/m\].
+/// Axial stiffness of a link that is pushed \[N/m\]: a loose chain folds instead of carrying; this keeps its joints apart.
+const FOLDED: f64 = 1e4;
+/// Pull of a link, or push of a wheel, per distance by which it may have come loose during the search \[N/m\].
 const LOOSE: f64 = 1e7;
 /// Stiffness added to each joint while searching \[N/m\]; it slows the search a little and changes no balance.
 const STEADYING: f64 = 1e3;
@@ -157,12 +159,9 @@ impl Chain {
             let mut step: Vec<f64> = step.iter().map(|d| d.x).collect();
             let largest = step.iter().map(|d| d.abs()).fold(0.0, f64::max);
             let next = self.reactions(&joints, &step, &known);
-            let has_changed = known
-                .pushes
-                .iter()
-                .flatten()
-                .zip(next.pushes.iter().flatten())
-                .any(|(a, b)| (*a > 0.0) != (*b > 0.0));
+            let differ = |(a, b): (&f64, &f64)| (*a > 0.0) != (*b > 0.0);
+            let has_changed = known.pulls.iter().zip(&next.pulls).any(differ)
+                || known.pushes.iter().flatten().zip(next.pushes.iter().flatten()).any(differ);
             known = next;
             let scale = (LARGEST_STEP / largest.max(1e-300)).min(1.0);
             step.iter_mut().for_each(|d| *d *= scale);
@@ -227,6 +226,11 @@ impl Chain {
         ([d[0] / length, d[1] / length], length)
     }
 
+    /// Axial stiffness of a link \[N/m\], stiff as far as it is pulled: one whose joints moved across it by d is d²/2l longer.
+    fn axial(&self, link: usize, length: f64, known: f64) -> f64 {
+        if length - self.lengths[link] + known / LOOSE > 0.0 { STIFF } else { FOLDED }
+    }
+
     /// Push of a wheel on a joint as far as it is in touch with it: a joint that slid off by d²/2r still is.
     fn is_pushed(circle: &[f64; 3], joint: [f64; 2], known: f64) -> bool {
         let (_, distance) = Self::towards([circle[0], circle[1]], joint);
@@ -241,7 +245,7 @@ impl Chain {
         let pull = |link: usize| {
             let (e, length) = Self::towards(joints[link], joints[link + 1]);
             let stretch: f64 = (0..2).map(|k| e[k] * (d(link + 1, k) - d(link, k))).sum();
-            STIFF * (length - self.lengths[link] + stretch)
+            self.axial(link, length, known.pulls[link]) * (length - self.lengths[link] + stretch)
         };
         let push = |joint: usize, circle: usize| {
             let c = &self.circles[circle];
@@ -309,11 +313,12 @@ impl Chain {
         let mut k = Banded { rows: vec![[0.0, 0.0, 0.0, STEADYING]; 2 * n] };
         for link in 0..=n {
             let (e, length) = Self::towards(joints[link], joints[link + 1]);
-            sprung.pulls[link] = STIFF * (length - self.lengths[link]);
-            let across = known.pulls[link].max(0.0) / length; // a pushed link would buckle: its negative part is left out
+            let axial = self.axial(link, length, known.pulls[link]);
+            sprung.pulls[link] = axial * (length - self.lengths[link]);
+            let across = known.pulls[link].max(0.0) / length; // a pushed link folds
             let between = |r: usize, c: usize| {
                 let unit = if r == c { 1.0 } else { 0.0 };
-                STIFF * e[r] * e[c] + across * (unit - e[r] * e[c])
+                axial * e[r] * e[c] + across * (unit - e[r] * e[c])
             };
             k.add_between(
                 link,
