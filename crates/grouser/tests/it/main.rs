@@ -1,5 +1,6 @@
 //! The program as a user runs it: bytes, interruptions, messages, exit status.
 
+mod both_searches;
 mod bytes;
 mod killed;
 mod messages;

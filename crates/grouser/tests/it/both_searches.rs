@@ -1,0 +1,68 @@
+//! The fast search and the nested one of the source (loops within loops) rest at the same place, on every scene with a vehicle.
+
+use grouser::scene::{self, Motion, Soil, Tool};
+use grouser_iscm::equilibrium::{SearchSettings, Solver, equilibrium, start_position};
+use grouser_iscm::machine::Machine;
+use grouser_iscm::terrain::Terrain;
+use std::path::Path;
+
+/// Distance of the ground's points [m]: the nested search draws and integrates a hundred thousand times.
+const SPACING: f64 = 0.12;
+
+fn rest(machine: &Machine, terrain: &Terrain, at: [f64; 2], solver: Solver) -> Vec<f64> {
+    let search = SearchSettings {
+        solver,
+        position_tolerance: 1e-7,
+        integration_resolution: 2,
+        ..SearchSettings::default()
+    };
+    let height = terrain.grid().height_at(at[0], at[1]) + 1.0;
+    let above = machine.mechanism.at(at, 0.0, height);
+    let start = start_position(machine, terrain, &above, 0.0, &search).unwrap();
+    let rest = equilibrium(machine, terrain, &start, 0.0, &search).unwrap();
+    println!(
+        "{solver:?}: {} drawings, {} evaluations, last change {:e} m",
+        rest.n_drawings, rest.n_evaluations, rest.last_change
+    );
+    machine.mechanism.dofs(&rest.configuration)
+}
+
+/// Both searches with the machine of a scene `along` \[m\] its route.
+fn compare(name: &str, along: f64) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(name);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let scenario = scene::read(&path.display().to_string(), &text, false, &[]).unwrap();
+    let (Soil::PressureSinkage(ground), Some(Tool::Vehicle(vehicle)), Some(Motion::Route(route))) =
+        (&scenario.soil, &scenario.tool, &scenario.motion)
+    else {
+        panic!("{name} has no vehicle on its way")
+    };
+    let terrain = ground.terrain(SPACING).unwrap();
+    let (at, _) = route.way().at(along);
+    for equipment in &vehicle.equipment {
+        let machine = vehicle.machine(equipment).unwrap();
+        let time = std::time::Instant::now();
+        let [fast, nested] =
+            [Solver::Fast, Solver::Nested].map(|solver| rest(&machine, &terrain, at, solver));
+        println!("{name}, {equipment}: {:.1} s", time.elapsed().as_secs_f64());
+        for (dof, (a, b)) in fast.iter().zip(&nested).enumerate() {
+            let dof = machine.mechanism.dof_name(dof);
+            assert!((a - b).abs() <= 1e-6, "{name}, {equipment}, {dof}: {a} and {b}");
+        }
+    }
+}
+
+#[test]
+fn both_searches_rest_at_the_same_place_on_the_waves_of_the_forwarder() {
+    compare("forwarder.ron", 0.5);
+}
+
+#[test]
+fn both_searches_rest_at_the_same_place_on_the_stump() {
+    compare("stump.ron", 1.65);
+}
+
+#[test]
+fn both_searches_rest_at_the_same_place_on_spatial_soil() {
+    compare("spatial_soil.ron", 0.5);
+}
