@@ -70,6 +70,8 @@ fn the_more_slack_the_deeper_until_each_wheel_stands_for_itself() {
         tight < 0.75 * taut && taut < 0.9 * slack && slack < 0.9 * slackest,
         "{tight} {taut} {slack} {slackest}"
     );
+    // Once no link is pulled, more slack changes nothing.
+    assert!((slackest - loose).abs() < 5e-3 * loose, "{slackest} {loose}");
     // Two cylinders of 0.52 m × 0.6 m: K w (r² acos(1 − z/r) − (r − z) √(2rz − z²)) = W/2. Shoes are chords, up to p²/8r = 6 mm higher.
     let area = |z: f64| 0.52_f64.powi(2) * (1.0 - z / 0.52).acos() - (0.52 - z) * (1.04 * z - z * z).sqrt();
     let (mut low, mut high) = (0.0, 0.3);
