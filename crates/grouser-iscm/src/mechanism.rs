@@ -11,6 +11,8 @@ use grouser_geometry::{Orientation, Pose, Vec3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::track::TrackShape;
+
 /// Standard gravity as the source paper takes it \[m/s²\].
 pub const GRAVITY: f64 = 9.81;
 
@@ -82,9 +84,9 @@ pub struct Configuration {
     pub roll: f64,
     /// Joint coordinates of all bodies \[rad or m\]; the first is unused.
     pub joints: Vec<f64>,
-    /// Sections of slack belts below the axles, points (x, z) in their bodies' frames \[m\], in the order of feet and belts; empty
+    /// Sections of slack belts below the axles, in the order of feet and belts; empty
     /// before the first rest.
-    pub tracks: Vec<Vec<[f64; 2]>>,
+    pub tracks: Vec<TrackShape>,
 }
 
 /// Why bodies make no machine.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{GearError, Hull, Wheel, positive};
 use crate::imprint::{Imprint, Plate};
-use crate::track::{DrawnTrack, tight_pitch};
+use crate::track::{DrawnTrack, TrackShape, tight_pitch};
 
 /// What a shoe shows to the ground.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -153,7 +153,7 @@ impl Belt {
         wheels: &[Wheel],
         pose: &Pose,
         travel: f64,
-        shape: Option<&[[f64; 2]]>,
+        shape: Option<&TrackShape>,
     ) -> Vec<[f64; 2]> {
         match self.fit {
             Fit::Tight => self.tight_joints(wheels, travel),

@@ -17,7 +17,7 @@ use crate::contact::FootImprint;
 use crate::imprint::Imprint;
 use crate::polygon::PartialLoad;
 use crate::terrain::Terrain;
-use crate::track::DrawnTrack;
+use crate::track::{DrawnTrack, TrackShape};
 
 /// Wheels and belts that stand on one body: a wheel, or a bogie with its track.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -117,7 +117,7 @@ impl Foot {
         pose: &Pose,
         travel: f64,
         partial: PartialLoad,
-        shapes: &[Vec<[f64; 2]>],
+        shapes: &[TrackShape],
     ) -> FootImprint {
         let grid = terrain.grid();
         let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
@@ -151,7 +151,7 @@ impl Foot {
             let mut first = 0;
             for belt in &self.belts {
                 let track = (belt.fit == Fit::Slack).then(|| {
-                    let shape = shapes.get(tracks.len()).map(Vec::as_slice);
+                    let shape = shapes.get(tracks.len());
                     DrawnTrack::new(belt, &self.wheels, pose, travel, shape, first)
                 });
                 let joints = track.as_ref().map(|track| track.joints.as_slice());

@@ -116,7 +116,8 @@ impl Imprint {
 
     /// Carries the underside on by one node beyond the edge of the gear, parallel to the `ground`'s undisturbed heights.
     ///
-    /// The soil under a vertical edge lies at full depth up to the edge; without this it would rise within one cell.
+    /// The soil under a vertical edge lies at full depth up to the edge; without this it would rise within one cell. Points that are hardly
+    /// covered lie in between, and neighbours count by what is covered of them, so that no height jumps as the edge passes a point.
     pub fn carry_edges(&mut self, ground: &HeightGrid) {
         if self.partial == PartialLoad::Step {
             return;
@@ -126,32 +127,41 @@ impl Imprint {
         let mut carried = Vec::new();
         for j in 0..self.n_y {
             for i in 0..self.n_x {
-                if self.nodes[j * self.n_x + i].coverage > 0.0 {
+                let own = self.nodes[j * self.n_x + i];
+                if own.coverage >= HARDLY_COVERED {
                     continue;
                 }
-                // Nearest covered neighbours: first along the axes, else across the corners.
-                for reach in [[(-1, 0), (1, 0), (0, -1), (0, 1)], [(-1, -1), (1, -1), (-1, 1), (1, 1)]] {
-                    let (mut n, mut depth, mut slope, mut owner) = (0.0, 0.0, [0.0; 2], 0);
-                    for (di, dj) in reach {
-                        let (a, b) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
-                        if a >= self.n_x || b >= self.n_y {
-                            continue;
-                        }
-                        let near = &self.nodes[b * self.n_x + a];
-                        if near.coverage > 0.0 {
-                            n += 1.0;
-                            depth += near.height - at(a, b);
-                            slope = [slope[0] + near.slope[0], slope[1] + near.slope[1]];
-                            owner = near.owner;
+                let (mut sum, mut depth, mut slope, mut largest) = (0.0, 0.0, [0.0; 2], (0.0, own.owner));
+                for (di, dj) in AROUND {
+                    let (a, b) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
+                    if a >= self.n_x || b >= self.n_y {
+                        continue;
+                    }
+                    let near = &self.nodes[b * self.n_x + a];
+                    if near.coverage > 0.0 {
+                        let weight = near.coverage * if di == 0 || dj == 0 { 1.0 } else { ACROSS };
+                        sum += weight;
+                        depth += weight * (near.height - at(a, b));
+                        slope = [slope[0] + weight * near.slope[0], slope[1] + weight * near.slope[1]];
+                        if weight > largest.0 {
+                            largest = (weight, near.owner);
                         }
                     }
-                    if n > 0.0 {
-                        let slope = [slope[0] / n, slope[1] / n];
-                        let height = at(i, j) + depth / n;
-                        let node = ImprintNode { coverage: 0.0, height, slope, owner, is_known: true };
-                        carried.push((j * self.n_x + i, node));
-                        break;
-                    }
+                }
+                if sum > 0.0 {
+                    let own_share = own.coverage / HARDLY_COVERED;
+                    let blend = |own: f64, carried: f64| match own_share {
+                        0.0 => carried,
+                        share => share * own + (1.0 - share) * carried,
+                    };
+                    let node = ImprintNode {
+                        coverage: own.coverage,
+                        height: blend(own.height, at(i, j) + depth / sum),
+                        slope: [0, 1].map(|k| blend(own.slope[k], slope[k] / sum)),
+                        owner: if own.coverage > 0.0 { own.owner } else { largest.1 },
+                        is_known: true,
+                    };
+                    carried.push((j * self.n_x + i, node));
                 }
             }
         }
@@ -160,6 +170,13 @@ impl Imprint {
         }
     }
 }
+
+/// Share of a cell below which the height of the gear there is partly carried on from its neighbours.
+const HARDLY_COVERED: f64 = 0.25;
+/// Weight of a neighbour across the corner, where one along the axes counts one.
+const ACROSS: f64 = 0.05;
+/// The neighbours of a point.
+const AROUND: [(isize, isize); 8] = [(-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (1, -1), (-1, 1), (1, 1)];
 
 /// Width of a cell of the grid along a horizontal direction, per spacing: 1 along the axes, √2 across.
 ///

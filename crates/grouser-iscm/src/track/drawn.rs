@@ -3,7 +3,7 @@
 use grouser_geometry::{Pose, Vec3};
 use nalgebra::{Matrix6, Vector6};
 
-use super::{Chain, Lay, Touch};
+use super::{Chain, Lay, Touch, TrackShape};
 use crate::contact::FootImprint;
 use crate::gear::{Belt, Wheel};
 use crate::mechanism::GRAVITY;
@@ -20,8 +20,9 @@ pub struct DrawnTrack {
     owners: std::ops::Range<u16>,
     /// Every joint (x, z) in the body's frame \[m\].
     pub joints: Vec<[f64; 2]>,
-    /// The section below the axles with its ends.
+    /// The section below the axles with its ends, and the links to its first joint.
     lower: Vec<[f64; 2]>,
+    first_place: f64,
     /// Link of the chain that each shoe is.
     links: Vec<Option<usize>>,
     chain: Chain,
@@ -90,7 +91,7 @@ impl DrawnTrack {
         wheels: &[Wheel],
         pose: &Pose,
         travel: f64,
-        shape: Option<&[[f64; 2]]>,
+        shape: Option<&TrackShape>,
         first: u16,
     ) -> Self {
         let circles = belt.circles(wheels);
@@ -112,6 +113,7 @@ impl DrawnTrack {
             joints,
             links,
             chain: Chain { lengths, weights, circles },
+            first_place: free.first().map_or(0.0, |joint| joint.1),
             at_rest: lower.clone(),
             lower,
             origin: pose.translation.vector,
@@ -197,10 +199,11 @@ impl DrawnTrack {
     }
 
     /// The lower section with its ends after the body moved, a `share` of the way from where it was drawn to its rest.
-    pub fn shape(&self, terrain: &Terrain, motion: &Pose, share: f64) -> Vec<[f64; 2]> {
+    pub fn shape(&self, terrain: &Terrain, motion: &Pose, share: f64) -> TrackShape {
         let rest = self.rest(terrain, motion).joints;
         let gone = |(a, b): (&[f64; 2], &[f64; 2])| [0, 1].map(|k| a[k] + share * (b[k] - a[k]));
-        self.lower.iter().zip(&rest).map(gone).collect()
+        let points = self.lower.iter().zip(&rest).map(gone).collect();
+        TrackShape { first: self.first_place, points }
     }
 
     /// Adds how the shoes move beside the body, and what the body feels.

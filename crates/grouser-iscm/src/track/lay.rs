@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use serde::{Deserialize, Serialize};
+
 use super::Catenary;
 use crate::gear::{Hull, Piece};
 
@@ -16,6 +18,15 @@ pub struct Lay {
     pitch: f64,
     /// Pitch with which the same links would lie tight \[m\].
     tight_pitch: f64,
+}
+
+/// The section of a slack belt below the axles, as it rests.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TrackShape {
+    /// Links from its rear end to the first joint; further joints follow a link apart.
+    pub first: f64,
+    /// Rear end, joints, front end (x, z) in the body's frame \[m\].
+    pub points: Vec<[f64; 2]>,
 }
 
 /// Pitch with which `n_shoes` stiff links lie tight around circles (x, z, radius) \[m\]: chords on the wheels, straight between them.
@@ -102,23 +113,25 @@ impl Lay {
     }
 
     /// The lower section with its ends: free joints along `shape`, an earlier one, or along the tightest way.
-    pub fn lower(&self, free: &[(usize, f64)], shape: Option<&[[f64; 2]]>) -> Vec<[f64; 2]> {
+    pub fn lower(&self, free: &[(usize, f64)], shape: Option<&TrackShape>) -> Vec<[f64; 2]> {
         let places = std::iter::once(0.0).chain(free.iter().map(|f| f.1)).chain([self.n_lower]);
         match shape {
             None => places.map(|m| self.tight(m)).collect(),
-            Some(shape) => {
-                let length = |p: &[[f64; 2]]| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1]);
-                let total: f64 = shape.windows(2).map(length).sum();
-                let (mut n, mut before) = (0, 0.0);
+            Some(TrackShape { first, points }) => {
+                let last = points.len() - 1;
+                let place = |n: usize| match n {
+                    0 => 0.0,
+                    n if n == last => self.n_lower,
+                    n => first + (n - 1) as f64,
+                };
+                let mut n = 0;
                 places
                     .map(|m| {
-                        let s = m / self.n_lower * total;
-                        while n + 2 < shape.len() && before + length(&shape[n..]) < s {
-                            before += length(&shape[n..]);
+                        while n + 1 < last && place(n + 1) < m {
                             n += 1;
                         }
-                        let t = ((s - before) / length(&shape[n..]).max(1e-12)).clamp(0.0, 1.0);
-                        [0, 1].map(|k| shape[n][k] + t * (shape[n + 1][k] - shape[n][k]))
+                        let t = ((m - place(n)) / (place(n + 1) - place(n)).max(1e-12)).clamp(0.0, 1.0);
+                        [0, 1].map(|k| points[n][k] + t * (points[n + 1][k] - points[n][k]))
                     })
                     .collect()
             }

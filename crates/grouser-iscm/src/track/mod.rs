@@ -12,5 +12,5 @@ mod wheel_forces;
 pub use catenary::Catenary;
 pub use chain::{Answer, Chain, Settled, Touch};
 pub use drawn::{DrawnTrack, Followed, ShoeShift};
-pub use lay::{Lay, tight_pitch};
+pub use lay::{Lay, TrackShape, tight_pitch};
 pub(crate) use wheel_forces::forces_on_wheels;

@@ -6,6 +6,7 @@ use grouser_iscm::gear::{Belt, Fit, Foot, ShoeShape, WheelShape};
 use grouser_iscm::imprint::Plate;
 use grouser_iscm::machine::Machine;
 use grouser_iscm::run::{RunSettings, RunState};
+use grouser_iscm::track::TrackShape;
 
 /// Flat sectors of a wheel as shown.
 const N_SECTORS: usize = 48;
@@ -73,7 +74,7 @@ impl Shown {
         self.triangles.extend(surface.triangles.iter().map(|t| t.map(|v| first + v)));
     }
 
-    fn foot(&mut self, foot: &Foot, body: &Pose, travel: f64, shapes: &[Vec<[f64; 2]>], number: usize) {
+    fn foot(&mut self, foot: &Foot, body: &Pose, travel: f64, shapes: &[TrackShape], number: usize) {
         for wheel in &foot.wheels {
             let spin = Orientation::from_axis_angle(&Vec3::y_axis(), travel / wheel.radius);
             let pose = body * Pose::from_parts(wheel.centre.into(), spin);
@@ -91,7 +92,7 @@ impl Shown {
         let mut shapes = shapes.iter();
         for belt in &foot.belts {
             let shape = (belt.fit == Fit::Slack).then(|| shapes.next()).flatten();
-            let joints = belt.joints(&foot.wheels, body, travel, shape.map(Vec::as_slice));
+            let joints = belt.joints(&foot.wheels, body, travel, shape);
             self.belt(belt, foot, body, &joints, number);
         }
     }
