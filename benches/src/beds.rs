@@ -39,11 +39,7 @@ impl BedOf {
     /// # Errors
     /// When the bed cannot be made or does not come to rest.
     pub fn settled(&self) -> Result<Bed<Law>, Box<dyn Error>> {
-        let (from, to) = self.radii.range();
-        let [x, y] = self.width;
-        let name = format!("{}-{:.2}-{:.2}-{x}-{y}", self.n_grains, 1e3 * from, 1e3 * to);
-        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../target/bench-beds");
-        let path = folder.join(name + ".json");
+        let path = self.path(".json");
         if let Ok(text) = std::fs::read(&path) {
             let rows: Vec<[f64; 4]> = serde_json::from_slice(&text)?;
             let mut bed = self.of(rows.iter().map(|&[x, y, z, r]| grain(Vec3::new(x, y, z), r)).collect())?;
@@ -69,25 +65,34 @@ impl BedOf {
             bed.grains().ids.iter().copied().zip(bed.grains().spheres.iter().map(row)).collect();
         rows.sort_by_key(|&(id, _)| id);
         let rows: Vec<_> = rows.into_iter().map(|(_, row)| row).collect();
-        std::fs::create_dir_all(&folder)?;
+        std::fs::create_dir_all(path.parent().unwrap_or(&path))?;
         std::fs::write(path, serde_json::to_vec(&rows)?)?;
         Ok(bed)
     }
 
     /// Lets the bed sink through something viscous, so that large grains do not crush small ones; gives the time it took [s].
     fn settle(&self, bed: &mut Bed<Law>) -> Result<f64, Failure> {
+        self.calm(bed, VISCOSITY, 1e-6, LONGEST)
+    }
+
+    /// Drag over mass `viscosity` [1/s] until the kinetic energy of a grain is below `ratio` of m g r, for `longest` [s]; gives the
+    /// time it took [s].
+    ///
+    /// # Errors
+    /// When the motion has become meaningless.
+    pub fn calm(&self, bed: &mut Bed<Law>, viscosity: f64, ratio: f64, longest: f64) -> Result<f64, Failure> {
         let scale: f64 = bed.grains().spheres.iter().map(|s| s.mass * 9.81 * s.radius).sum();
         let mut time = 0.0;
-        while time < LONGEST {
+        while time < longest {
             bed.run(200, self.time_step(), |grains| {
                 for (sphere, load) in grains.spheres.iter().zip(&mut grains.loads) {
-                    load.force -= sphere.velocity * (sphere.mass * VISCOSITY);
+                    load.force -= sphere.velocity * (sphere.mass * viscosity);
                 }
                 Ok::<(), Failure>(())
             })?;
             time += 200.0 * self.time_step();
             let is_down = bed.n_contacts() > 2 * bed.grains().len();
-            if is_down && bed.grains().kinetic_energy().iter().sum::<f64>() < 1e-6 * scale {
+            if is_down && bed.grains().kinetic_energy().iter().sum::<f64>() < ratio * scale {
                 break;
             }
         }
@@ -98,22 +103,45 @@ impl BedOf {
     ///
     /// # Errors
     /// As [`BedOf::settled`].
-    pub fn tiled(&self, tiles: usize) -> Result<Bed<Law>, Box<dyn Error>> {
+    pub fn tiled(&self, tiles: [usize; 2]) -> Result<Bed<Law>, Box<dyn Error>> {
         let one = self.settled()?;
         let mut spheres = Vec::new();
-        for tile in 0..tiles * tiles {
-            let [column, row] = [tile % tiles, tile / tiles].map(|index| index as f64);
+        for tile in 0..tiles[0] * tiles[1] {
+            let [column, row] = [tile % tiles[0], tile / tiles[0]].map(|index| index as f64);
             for sphere in &one.grains().spheres {
                 let [x, y, z] = sphere.position.to_array();
                 let place = Vec3::new(x + column * self.width[0], y + row * self.width[1], z);
                 spheres.push(grain(place, sphere.radius));
             }
         }
-        let width = self.width.map(|length| length * tiles as f64);
+        let width = [0, 1].map(|axis| self.width[axis] * tiles[axis] as f64);
         let n_grains = spheres.len();
         let mut bed = Self { width, n_grains, ..*self }.of(spheres)?;
         bed.run(500, self.time_step(), |_| Ok::<(), Failure>(()))?;
         Ok(bed)
+    }
+
+    /// [`BedOf::tiled`] and come to rest again, with all springs: kept in the build folder as well.
+    ///
+    /// # Errors
+    /// As [`BedOf::settled`].
+    pub fn tiled_at_rest(&self, tiles: [usize; 2]) -> Result<Bed<Law>, Box<dyn Error>> {
+        let path = self.path(&format!("-{}x{}.bin", tiles[0], tiles[1]));
+        if let Some(bed) = std::fs::read(&path).ok().and_then(|bytes| postcard::from_bytes(&bytes).ok()) {
+            return Ok(bed);
+        }
+        let mut bed = self.tiled(tiles)?;
+        self.calm(&mut bed, 100.0, 2e-7, 0.3)?;
+        std::fs::write(path, postcard::to_allocvec(&bed)?)?;
+        Ok(bed)
+    }
+
+    /// The file of the build folder that keeps this bed.
+    fn path(&self, ending: &str) -> PathBuf {
+        let (from, to) = self.radii.range();
+        let [x, y] = self.width;
+        let name = format!("{}-{:.2}-{:.2}-{x}-{y}{ending}", self.n_grains, 1e3 * from, 1e3 * to);
+        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../target/bench-beds").join(name)
     }
 
     fn domain(&self, top: f64) -> Domain {

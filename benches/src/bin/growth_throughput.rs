@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut figures = Figures::new("growth", arguments.threads);
     let mut of_first = 0.0;
     for &tiles in &arguments.tiles {
-        let mut bed = bed_of.tiled(tiles)?;
+        let mut bed = bed_of.tiled([tiles; 2])?;
         let n_grains = bed.grains().len();
         let n_steps = (arguments.steps / (tiles * tiles) as u64).max(50);
         let time = cost(&mut bed, bed_of.time_step(), n_steps, 3)?;

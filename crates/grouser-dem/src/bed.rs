@@ -1,9 +1,11 @@
 //! A bed of grains: everything that one step needs, and the step.
 
+use crate::active_zone::Zone;
 use crate::force_pass::{InstructionSet, PassInput};
 use crate::integrate::{Motion, Pace, Stages, Turning};
 use crate::neighbours::Neighbours;
 use crate::shared_grains::SharedGrains;
+use crate::sleepers::places;
 use crate::sweep::{is_shared, sweep};
 use crate::{BedEnergy, BedError, Domain, Failure, Grains, Plane, Rotation};
 use grouser_contact::{
@@ -34,18 +36,19 @@ pub struct BedSettings {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound(serialize = "L: ContactLaw<P::Real>", deserialize = "L: ContactLaw<P::Real>"))]
 pub struct Bed<L: ContactLaw<P::Real>, P: Precision = F64> {
-    grains: Grains<P>,
-    settings: BedSettings,
-    table: PairTable<P::Real>,
-    neighbours: Neighbours<P, L::Memory>,
+    pub(crate) grains: Grains<P>,
+    pub(crate) settings: BedSettings,
+    pub(crate) table: PairTable<P::Real>,
+    pub(crate) neighbours: Neighbours<P, L::Memory>,
     ledger: ContactLedger,
     is_too_deep: bool,
-    law: L,
+    pub(crate) law: L,
+    pub(crate) zone: Option<Box<Zone<L::Memory>>>,
     /// Coefficient of the damping of absolute velocities [N·s/m], and what it has taken so far [J].
     background: [f64; 2],
-    largest_overlap: f64,
+    pub(crate) largest_overlap: f64,
     #[serde(skip, default = "InstructionSet::detect")]
-    set: InstructionSet,
+    pub(crate) set: InstructionSet,
 }
 
 impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
@@ -77,6 +80,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
             ledger,
             is_too_deep: false,
             law,
+            zone: None,
             background: [0.0; 2],
             largest_overlap: LARGEST_OVERLAP,
             set,
@@ -138,7 +142,11 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     /// # Errors
     /// When a grain is not finite, overlaps too far, or left the box.
     pub fn predict(&mut self, time_step: f64) -> Result<(), Failure> {
-        let pace = self.motion(time_step, Stages::None).predict_all(&mut self.grains);
+        let motion = self.motion(time_step, Stages::None);
+        let mut pace = Pace::STILL;
+        for range in self.moving() {
+            pace = pace.and(motion.predict_all(&mut self.grains, range));
+        }
         self.look_after(pace, time_step)
     }
 
@@ -149,7 +157,16 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
 
     /// Corrects the velocities with all loads added by now.
     pub fn correct(&mut self, time_step: f64) {
-        self.motion(time_step, Stages::None).correct_all(&mut self.grains);
+        let motion = self.motion(time_step, Stages::None);
+        for range in self.moving() {
+            motion.correct_all(&mut self.grains, range);
+        }
+    }
+
+    /// Ranges of grains that move: all of them, unless an active zone holds some.
+    fn moving(&self) -> Vec<std::ops::Range<usize>> {
+        let everybody = || std::iter::once(0..self.grains.len()).collect();
+        self.zone.as_ref().map_or_else(everybody, |zone| zone.moving().collect())
     }
 
     /// [`Bed::contact_forces`], [`Bed::correct`] and [`Bed::predict`] in one sweep, for grains that are still in the cache.
@@ -188,10 +205,11 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         // Pairs of large grains first: the last sweep moves the grains.
         let stays = Motion { stages: Stages::None, ..motion };
         for level in large.iter_mut().rev() {
-            sweep(&mut level.slabs, level.is_ring, &[], &input, &stays);
+            sweep(&mut level.slabs, level.is_ring, &[], &input, &stays, None);
         }
-        let pace = sweep(slabs, *is_ring, &self.settings.planes, &input, &motion);
-        let mut pass = ContactLedger::default();
+        let runs = self.zone.as_ref().map(|zone| &zone.runs[..]);
+        let pace = sweep(slabs, *is_ring, &self.settings.planes, &input, &motion, runs);
+        let mut pass = self.zone.as_ref().map_or_else(ContactLedger::default, |zone| zone.elastic);
         self.is_too_deep = false;
         for slab in self.neighbours.all_slabs() {
             pass += slab.sums.ledger;
@@ -214,7 +232,11 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         }
         self.grains.fastest = pace.fastest_squared.sqrt();
         let travel = self.grains.fastest * time_step;
-        if self.neighbours.are_too_old(&self.grains, &self.settings.domain, travel) {
+        let has_changed = self.zone.as_mut().is_some_and(|zone| {
+            zone.look(&mut self.grains, time_step, self.settings.gravity.norm());
+            zone.has_changed
+        });
+        if has_changed || self.neighbours.are_too_old(&self.grains, &self.settings.domain, travel) {
             self.renew_lists()?;
         }
         self.damp_background(time_step);
@@ -236,7 +258,8 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         if *coefficient == 0.0 {
             return;
         }
-        for (sphere, load) in self.grains.spheres.iter().zip(&mut self.grains.loads) {
+        let n_listed = self.zone.as_ref().map_or(self.grains.len(), |zone| zone.n_listed());
+        for (sphere, load) in self.grains.spheres[..n_listed].iter().zip(&mut self.grains.loads) {
             load.force -= sphere.velocity * P::Real::from_f64(*coefficient);
             *taken += *coefficient * sphere.velocity.norm_squared().to_f64() * time_step;
         }
@@ -296,18 +319,25 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
 
     /// Number of touching pairs of grains at the last force pass.
     pub fn n_contacts(&self) -> usize {
-        self.neighbours.all_slabs().map(|slab| slab.n_touching()).sum()
+        let listed: usize = self.neighbours.all_slabs().map(|slab| slab.n_touching()).sum();
+        listed + self.zone.as_ref().map_or(0, |zone| zone.sleepers.n_contacts())
     }
 
     /// Touching pairs of the last force pass, as places in [`Grains::spheres`].
     pub fn contacts(&self) -> impl Iterator<Item = [u32; 2]> {
-        self.neighbours.all_slabs().flat_map(|slab| {
+        let place = self.zone.as_ref().map(|_| places(&self.grains.ids));
+        let asleep = self.zone.iter().flat_map(move |zone| {
+            let place = place.clone().unwrap_or_default();
+            zone.sleepers.contacts().map(move |pair| pair.map(|id| place[id as usize]))
+        });
+        let listed = self.neighbours.all_slabs().flat_map(|slab| {
             slab.pairs
                 .iter()
                 .enumerate()
                 .filter(|(place, _)| slab.has_touched(*place))
                 .map(|(_, pair)| pair.grains())
-        })
+        });
+        listed.chain(asleep)
     }
 
     /// Number of listed pairs, touching or near.
@@ -328,12 +358,15 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     /// Memory held by grains and lists [bytes].
     pub fn bytes(&self) -> usize {
         let per_grain = size_of::<Sphere<P>>() + 16 * size_of::<P::Real>() + 4;
-        self.grains.len() * per_grain + self.neighbours.bytes()
+        let of_zone = self.zone.as_ref().map_or(0, |zone| zone.bytes());
+        self.grains.len() * per_grain + self.neighbours.bytes() + of_zone
     }
 
     /// Force of the grains on plane `plane` at the last force pass [N].
     pub fn plane_force(&self, plane: usize) -> Vec3 {
-        self.neighbours.slabs.iter().filter_map(|slab| slab.planes.get(plane)).map(|list| list.force).sum()
+        let lists = self.neighbours.slabs.iter().filter_map(|slab| slab.planes.get(plane));
+        let asleep = self.zone.iter().filter_map(|zone| zone.plane_forces.get(plane)).sum::<Vec3>();
+        lists.map(|list| list.force).sum::<Vec3>() + asleep
     }
 
     /// Energies at this instant; contact terms are zero without a ledger.
@@ -350,6 +383,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
             gravitational,
             contacts: self.ledger,
             background_damping: self.background[1],
+            fallen_asleep: self.zone.as_ref().map_or(0.0, |zone| zone.account.energy_taken),
         }
     }
 
@@ -359,8 +393,9 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     /// When a grain is not finite or has left the box.
     pub fn renew_lists(&mut self) -> Result<(), Failure> {
         let (grains, domain) = (&mut self.grains, &self.settings.domain);
-        grains.wrap(domain);
-        for (sphere, &grain) in grains.spheres.iter().zip(&grains.ids) {
+        let n_listed = self.zone.as_ref().map_or(grains.len(), |zone| zone.n_listed());
+        grains.wrap(domain, n_listed);
+        for (sphere, &grain) in grains.spheres[..n_listed].iter().zip(&grains.ids) {
             if !sphere.is_finite() {
                 return Err(Failure::NonFinite { grain });
             }
@@ -369,7 +404,15 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
                 return Err(Failure::Lost { grain, position });
             }
         }
-        self.neighbours.rebuild(grains, domain, &self.settings.planes);
+        // Grains that are about to fall asleep come into no sleeping block.
+        if let Some(zone) = self.zone.as_mut().filter(|zone| !zone.has_changed) {
+            zone.wake_where_grains_came(grains);
+        }
+        let has_changed = self.zone.as_ref().is_some_and(|zone| zone.has_changed);
+        self.neighbours.rebuild(grains, domain, &self.settings.planes, self.zone.as_deref_mut());
+        if has_changed {
+            self.weigh_sleepers();
+        }
         Ok(())
     }
 

@@ -16,6 +16,8 @@ pub struct BedEnergy {
     pub contacts: ContactLedger,
     /// Lost to background damping since the bed was made [J].
     pub background_damping: f64,
+    /// Kinetic energy of grains when they fell asleep, lost since the active zone began [J].
+    pub fallen_asleep: f64,
 }
 
 impl BedEnergy {

@@ -117,10 +117,15 @@ impl<P: Precision> Grains<P> {
         }
     }
 
-    /// Puts grain `order[k]` at place k.
+    /// Puts grain `order[k]` at place k; grains beyond the order stay where they are.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
         fn sorted<V: Copy>(values: &mut Vec<V>, order: &[u32]) {
-            *values = order.iter().map(|&old| values[old as usize]).collect();
+            let sorted: Vec<V> = order.iter().map(|&old| values[old as usize]).collect();
+            if sorted.len() == values.len() {
+                *values = sorted;
+            } else {
+                values[..sorted.len()].copy_from_slice(&sorted);
+            }
         }
         sorted(&mut self.spheres, order);
         sorted(&mut self.ids, order);
@@ -131,9 +136,9 @@ impl<P: Precision> Grains<P> {
         }
     }
 
-    /// Moves grains that left a periodic box back into it.
-    pub(crate) fn wrap(&mut self, domain: &Domain) {
-        for sphere in &mut self.spheres {
+    /// Moves those of the first `n` grains that left a periodic box back into it.
+    pub(crate) fn wrap(&mut self, domain: &Domain, n: usize) {
+        for sphere in &mut self.spheres[..n] {
             sphere.position = domain.wrapped(sphere.position);
         }
     }

@@ -109,9 +109,12 @@ impl<T: Real> Motion<T> {
         watch.pace()
     }
 
-    /// Corrects all grains.
-    pub fn correct_all<P: Precision<Real = T>>(&self, grains: &mut Grains<P>) {
+    /// Corrects the grains of a range.
+    pub fn correct_all<P: Precision<Real = T>>(&self, grains: &mut Grains<P>, range: Range<usize>) {
         let Grains { spheres, loads, accelerations, orientations, .. } = grains;
+        let orientations = orientations.as_ref().map(|all| &all[range.clone()]);
+        let (spheres, loads) = (&mut spheres[range.clone()], &loads[range.clone()]);
+        let accelerations = &mut accelerations[range];
         if let Some(orientations) = orientations {
             for (index, orientation) in orientations.iter().enumerate() {
                 self.correct_turned(
@@ -128,9 +131,12 @@ impl<T: Real> Motion<T> {
         }
     }
 
-    /// Predicts all grains and clears their loads.
-    pub fn predict_all<P: Precision<Real = T>>(&self, grains: &mut Grains<P>) -> Pace {
+    /// Predicts the grains of a range and clears their loads.
+    pub fn predict_all<P: Precision<Real = T>>(&self, grains: &mut Grains<P>, range: Range<usize>) -> Pace {
         let Grains { spheres, loads, accelerations, orientations, .. } = grains;
+        let orientations = orientations.as_mut().map(|all| &mut all[range.clone()]);
+        let (spheres, loads) = (&mut spheres[range.clone()], &mut loads[range.clone()]);
+        let accelerations = &mut accelerations[range];
         let mut watch = Watch::default();
         if let Some(orientations) = orientations {
             for (index, orientation) in orientations.iter_mut().enumerate() {

@@ -50,20 +50,21 @@ impl LevelGrid {
     }
 }
 
-/// Lists of all levels above the lowest, whose grid is `base`.
+/// Lists of all levels above the lowest, whose grid is `base`; pairs of two grains that sleep are left out.
 pub(crate) fn lists_of_large_grains<P: Precision, M: Memory<P::Real>>(
     levels: &SizeLevels,
     base: &CellGrid,
     spheres: &[Sphere<P>],
     domain: &Domain,
     skin: f64,
+    is_asleep: &[bool],
 ) -> Vec<LargeGrains<P::Real, M>> {
     let grids: Vec<LevelGrid> =
         (1..levels.n()).map(|level| LevelGrid::new(level, levels, spheres, domain, skin)).collect();
     let period = domain.period();
     (1..levels.n())
         .map(|level| {
-            let seek = Seek { level, levels, base, grids: &grids, spheres, period, skin };
+            let seek = Seek { level, levels, base, grids: &grids, spheres, period, skin, is_asleep };
             seek.lists()
         })
         .collect()
@@ -78,6 +79,7 @@ struct Seek<'a, P: Precision> {
     spheres: &'a [Sphere<P>],
     period: Period<P::Coordinate>,
     skin: f64,
+    is_asleep: &'a [bool],
 }
 
 impl<P: Precision> Seek<'_, P> {
@@ -125,7 +127,11 @@ impl<P: Precision> Seek<'_, P> {
     fn pairs_of(&self, grain: u32, mut take: impl FnMut(Pair)) {
         let sphere = &self.spheres[grain as usize];
         let skin = P::Coordinate::from_f64(self.skin);
+        let sleeps = |grain: u32| self.is_asleep.get(grain as usize) == Some(&true);
         let mut look_at = |other_grain: u32| {
+            if sleeps(grain) && sleeps(other_grain) {
+                return;
+            }
             let other = &self.spheres[other_grain as usize];
             let reach = sphere.radius + other.radius + skin;
             let (difference, image) = self.period.nearest(sphere.position - other.position);

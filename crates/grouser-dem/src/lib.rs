@@ -35,7 +35,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod active_zone;
 mod bed;
+mod bed_zone;
+mod border;
 mod cell_grid;
 mod domain;
 mod energy;
@@ -54,10 +57,13 @@ mod settle;
 mod shared_grains;
 mod size_levels;
 mod slab;
+mod sleepers;
 mod sweep;
 mod time_step;
 mod turning;
+mod zone_blocks;
 
+pub use active_zone::{ActiveZone, ZoneAccount};
 pub use bed::{Bed, BedSettings, LARGEST_OVERLAP};
 pub use domain::Domain;
 pub use energy::BedEnergy;

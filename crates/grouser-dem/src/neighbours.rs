@@ -1,5 +1,6 @@
 //! Verlet lists over the sorted bed, with a skin that tunes itself.
 
+use crate::active_zone::Zone;
 use crate::cell_grid::CellGrid;
 use crate::large_grains::{LargeGrains, lists_of_large_grains};
 use crate::plane::{Plane, PlaneList};
@@ -74,7 +75,7 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
         if self.moved < 0.5 * self.skin {
             return false;
         }
-        if self.reference.len() != grains.spheres.len() {
+        if self.reference.is_empty() {
             return true;
         }
         let period = domain.period::<P::Coordinate>();
@@ -87,31 +88,88 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
         self.moved + travel >= 0.5 * self.skin
     }
 
-    /// Sorts the grains and makes the lists anew; every touching pair keeps its memory.
-    pub fn rebuild(&mut self, grains: &mut Grains<P>, domain: &Domain, planes: &[Plane]) {
-        self.tune_skin(grains);
-        let range = 2.0 * self.levels.largest(0) + self.skin;
-        let mut grid = CellGrid::new(&grains.spheres, domain, range);
-        let cells: Vec<u32> = grains.spheres.iter().map(|sphere| grid.cell_of(sphere)).collect();
-        let order = grid.sort(&cells);
+    /// Sorts the grains and makes the lists anew; every touching pair keeps its memory. Grains that sleep far from anybody
+    /// awake are not listed.
+    pub fn rebuild(
+        &mut self,
+        grains: &mut Grains<P>,
+        domain: &Domain,
+        planes: &[Plane],
+        zone: Option<&mut Zone<M>>,
+    ) {
+        self.tune_skin();
+        match zone {
+            None => self.sort_and_list(grains, domain, planes, None, Vec::new()),
+            Some(zone) if !zone.has_changed => {
+                self.sort_and_list(grains, domain, planes, Some(zone), Vec::new());
+            }
+            Some(zone) => {
+                let order = self.part(grains, zone);
+                self.sort_and_list(grains, domain, planes, Some(zone), order);
+            }
+        }
+    }
+
+    /// Parts the grains into those to be listed and those that sleep far from anybody awake; gives the order.
+    fn part(&self, grains: &mut Grains<P>, zone: &mut Zone<M>) -> Vec<u32> {
+        let is_asleep = zone.fall_asleep_and_wake(grains);
+        zone.sleepers.take(&self.all_slabs().collect::<Vec<_>>(), &grains.ids, &is_asleep);
+        let is_listed = zone.to_be_listed(grains, &is_asleep);
+        let (mut order, far): (Vec<u32>, Vec<u32>) =
+            (0..grains.len() as u32).partition(|&place| is_listed[place as usize]);
+        zone.is_asleep = order.iter().map(|&place| is_asleep[place as usize]).collect();
+        order.extend(far);
         grains.reorder(&order);
+        order
+    }
+
+    /// Sorts listed grains and makes the lists. `parted` is the order in which grains have just been parted, or nothing.
+    fn sort_and_list(
+        &mut self,
+        grains: &mut Grains<P>,
+        domain: &Domain,
+        planes: &[Plane],
+        zone: Option<&mut Zone<M>>,
+        parted: Vec<u32>,
+    ) {
+        let n_listed = zone.as_ref().map_or(grains.len(), |zone| zone.n_listed());
+        let range = 2.0 * self.levels.largest(0) + self.skin;
+        let mut grid = CellGrid::new(&grains.spheres[..n_listed], domain, range);
+        let cells: Vec<u32> = grains.spheres[..n_listed].iter().map(|sphere| grid.cell_of(sphere)).collect();
+        let mut order = grid.sort(&cells);
+        grains.reorder(&order);
+        let is_asleep: Vec<bool> = match &zone {
+            None => Vec::new(),
+            Some(zone) => order.iter().map(|&place| zone.is_asleep[place as usize]).collect(),
+        };
+        if !parted.is_empty() {
+            order.iter_mut().for_each(|place| *place = parted[*place as usize]);
+        }
         let period = domain.period();
         let [skin, largest] = [self.skin, self.levels.largest(0)].map(P::Coordinate::from_f64);
-        let spheres = &grains.spheres;
+        let spheres = &grains.spheres[..n_listed];
         let mut slabs: Vec<Slab<P::Real, M>> = layers_of_slabs(&grid, GRAINS_PER_SLAB, 1)
             .into_par_iter()
-            .map(|layers| Slab::build(&grid, layers, spheres, &period, skin, largest))
+            .map(|layers| Slab::build(&grid, layers, spheres, &period, skin, largest, &is_asleep))
             .collect();
-        let mut large = lists_of_large_grains(&self.levels, &grid, spheres, domain, self.skin);
-        let old = Lookup::new(&self.slabs, spheres.len());
-        slabs.par_iter_mut().for_each(|slab| old.carry_over(slab, &order));
+        let mut large = lists_of_large_grains(&self.levels, &grid, spheres, domain, self.skin, &is_asleep);
+        // Memory comes from the old lists, or from those who slept.
+        let old = Lookup::new(&self.slabs);
+        let slept = zone.as_ref().filter(|_| !parted.is_empty()).map(|zone| &zone.sleepers);
+        let slept_with = |i: u32, j: u32| slept?.recall(grains.ids[i as usize], grains.ids[j as usize]);
+        slabs.par_iter_mut().for_each(|slab| carry_over(slab, &order, |i, j| old.memory(i, j), slept_with));
         for (level, before) in large.iter_mut().zip(&self.large) {
-            level.slabs.par_iter_mut().for_each(|slab| carry_over(slab, &order, |i, j| before.recall(i, j)));
+            let recall = |i, j| before.recall(i, j);
+            level.slabs.par_iter_mut().for_each(|slab| carry_over(slab, &order, recall, slept_with));
         }
         for slab in &mut slabs {
             let list = |(index, plane)| {
-                let remembered = |grain: u32| old.plane_memory(index, order[grain as usize]);
-                PlaneList::build(plane, slab.grains(), spheres, self.skin, remembered)
+                let remembered = |grain: u32| {
+                    let old = old.plane_memory(index, order[grain as usize]);
+                    old.or_else(|| slept?.recall_plane(index, grains.ids[grain as usize])).unwrap_or_default()
+                };
+                let moving = slab.grains().filter(|&grain| is_asleep.get(grain as usize) != Some(&true));
+                PlaneList::build(plane, moving, spheres, self.skin, remembered)
             };
             slab.planes = planes.iter().enumerate().map(list).collect();
         }
@@ -119,7 +177,20 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
         self.large = large;
         self.is_ring = grid.is_slab_axis_periodic() && self.slabs.len() > 1;
         self.reference.clear();
-        self.reference.extend(grains.spheres.iter().map(|sphere| sphere.position));
+        self.reference.extend(spheres.iter().map(|sphere| sphere.position));
+        if let Some(zone) = zone {
+            if !parted.is_empty() {
+                let mut sleeps = vec![true; grains.len()];
+                for place in (0..n_listed).filter(|&place| !is_asleep[place]) {
+                    sleeps[grains.ids[place] as usize] = false;
+                }
+                zone.sleepers.forget_awake(&sleeps);
+            }
+            zone.is_asleep = is_asleep;
+            let slabs = self.slabs.iter().map(Slab::grains);
+            let pairs = self.all_slabs().flat_map(|slab| slab.pairs.iter().map(|pair| pair.grains()));
+            zone.number_anew(slabs, pairs, grains);
+        }
         self.moved = 0.0;
         self.steps_since_rebuild = 0;
         self.n_rebuilds += 1;
@@ -128,11 +199,11 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
     /// Balances looks at pairs, which grow with the skin s like p₀ (1 + s/2r)³, against rebuilds, which come every
     /// s/(2u) steps when the fastest grain moves u a step: the least cost has p₀ 3/(2r) (1 + s/2r)² = 2 u B / s². Here r is
     /// the mean radius.
-    fn tune_skin(&mut self, grains: &Grains<P>) {
+    fn tune_skin(&mut self) {
         if self.steps_since_rebuild == 0 || self.slabs.is_empty() {
             return;
         }
-        let n_grains = grains.spheres.len() as f64;
+        let n_grains = self.reference.len() as f64;
         let diameter = 2.0 * self.mean_radius;
         let n_pairs: usize = self.all_slabs().map(|slab| slab.pairs.len()).sum();
         let pairs_without_skin = n_pairs as f64 / n_grains / (1.0 + self.skin / diameter).powi(3);
@@ -160,8 +231,8 @@ struct Lookup<'a, T: Real, M> {
 }
 
 impl<'a, T: Real, M: Memory<T>> Lookup<'a, T, M> {
-    fn new(slabs: &'a [Slab<T, M>], n_grains: usize) -> Self {
-        let mut slab_of = Vec::with_capacity(n_grains);
+    fn new(slabs: &'a [Slab<T, M>]) -> Self {
+        let mut slab_of = Vec::with_capacity(slabs.iter().map(|slab| slab.n_grains as usize).sum());
         for (index, slab) in slabs.iter().enumerate() {
             slab_of.resize(slab_of.len() + slab.n_grains as usize, index as u32);
         }
@@ -174,27 +245,25 @@ impl<'a, T: Real, M: Memory<T>> Lookup<'a, T, M> {
         seek(i, j).or_else(|| seek(j, i).map(M::seen_from_the_other))
     }
 
-    /// What old grain `grain` remembers of plane `plane`.
-    fn plane_memory(&self, plane: usize, grain: u32) -> M {
-        let slab = self.slab_of.get(grain as usize).map(|&slab| &self.slabs[slab as usize]);
-        slab.and_then(|slab| slab.planes.get(plane)?.memory_of(grain)).unwrap_or_default()
-    }
-
-    /// Fills the memory of a new slab; `order[new]` is the old number of a grain.
-    fn carry_over(&self, slab: &mut Slab<T, M>, order: &[u32]) {
-        carry_over(slab, order, |i, j| self.memory(i, j));
+    /// What old grain `grain` remembers of plane `plane`, if it was listed there.
+    fn plane_memory(&self, plane: usize, grain: u32) -> Option<M> {
+        let slab = &self.slabs[*self.slab_of.get(grain as usize)? as usize];
+        slab.planes.get(plane)?.memory_of(grain)
     }
 }
 
-/// Fills the memory of a new slab from what pairs of old grains remember.
+/// Fills the memory of a new slab from what pairs of old grains remember (`order[new]` is the old number of a grain), or else
+/// from `slept`, by new numbers.
 fn carry_over<T: Real, M: Memory<T>>(
     slab: &mut Slab<T, M>,
     order: &[u32],
     recall: impl Fn(u32, u32) -> Option<M>,
+    slept: impl Fn(u32, u32) -> Option<M>,
 ) {
     for place in 0..slab.pairs.len() {
         let [i, j] = slab.pairs[place].grains();
-        if let Some(memory) = recall(order[i as usize], order[j as usize]) {
+        let remembered = recall(order[i as usize], order[j as usize]);
+        if let Some(memory) = remembered.or_else(|| slept(i, j)) {
             slab.memory[place] = memory;
             slab.touched[place / 64] |= 1 << (place % 64);
         }

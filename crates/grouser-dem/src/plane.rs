@@ -45,7 +45,7 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
     /// Grains of `range` closer to `plane` than `skin` [m]; `remembered(grain)` is what a grain brings along.
     pub fn build<P: Precision<Real = T>>(
         plane: &Plane,
-        range: std::ops::Range<u32>,
+        range: impl Iterator<Item = u32>,
         spheres: &[Sphere<P>],
         skin: f64,
         remembered: impl Fn(u32) -> M,
@@ -56,6 +56,11 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
         };
         let grains: Vec<u32> = range.filter(near).collect();
         let memory = grains.iter().map(|&grain| remembered(grain)).collect();
+        Self::of(grains, memory)
+    }
+
+    /// The list of `grains`, by rising place, with what each of them remembers.
+    pub fn of(grains: Vec<u32>, memory: Vec<M>) -> Self {
         Self { grains, memory, force: Vec3::zeros(), scalar: std::marker::PhantomData }
     }
 

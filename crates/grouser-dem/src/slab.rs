@@ -71,7 +71,8 @@ pub(crate) struct SlabSums {
 }
 
 impl<T: Real, M: Memory<T>> Slab<T, M> {
-    /// Pairs of grains up to `largest` [m] whose surfaces are closer than `skin` [m], of the cell layers `layers`.
+    /// Pairs of grains up to `largest` [m] whose surfaces are closer than `skin` [m], of the cell layers `layers`. Pairs of
+    /// two grains that sleep are left out; `is_asleep` is empty where nobody does.
     pub fn build<P: Precision<Real = T>>(
         grid: &CellGrid,
         layers: std::ops::Range<usize>,
@@ -79,6 +80,7 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
         period: &Period<P::Coordinate>,
         skin: P::Coordinate,
         largest: P::Coordinate,
+        is_asleep: &[bool],
     ) -> Self {
         let [_, n_rows, n_columns] = grid.counts;
         let layer = n_rows * n_columns;
@@ -96,8 +98,12 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
                     rows.push(pairs.len() as u32);
                     continue;
                 }
+                let sleeps = is_asleep.get(i as usize) == Some(&true);
                 let mut seek = |range: std::ops::Range<u32>| {
                     for j in range {
+                        if sleeps && is_asleep[j as usize] {
+                            continue;
+                        }
                         let other = &spheres[j as usize];
                         let reach = sphere.radius + other.radius + skin;
                         let (difference, image) = period.nearest(sphere.position - other.position);

@@ -16,6 +16,7 @@ use crate::plane::Plane;
 use crate::slab::Slab;
 use grouser_contact::{ContactLaw, Memory, Precision};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Grains that another thread is worth. Measured: a second thread costs 0–3 % of a bed of 250 to 2,000 grains and gains 5–9 % at
 /// 4,000. The tests of thread counts have beds of at least three times as many, so that threads do share them.
@@ -31,16 +32,23 @@ pub(crate) fn is_shared(n_grains: usize) -> bool {
     threads_of(n_grains) > 1
 }
 
-/// Forces of all slabs, and `motion` of every grain afterwards.
+/// Forces of all slabs, and `motion` of every grain afterwards, or of the grains in `runs` of each slab alone.
 pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
     slabs: &mut [Slab<P::Real, L::Memory>],
     is_ring: bool,
     planes: &[Plane],
     input: &PassInput<P, L>,
     motion: &Motion<P::Real>,
+    runs: Option<&[Vec<Range<u32>>]>,
 ) -> Pace {
     let ranges: Vec<_> = slabs.iter().map(Slab::grains).collect();
-    let moves = |slab: usize| motion.advance(input.grains, ranges[slab % ranges.len()].clone(), input.set);
+    let moves = |slab: usize| match runs {
+        None => motion.advance(input.grains, ranges[slab % ranges.len()].clone(), input.set),
+        Some(runs) => runs[slab % ranges.len()]
+            .iter()
+            .map(|run| motion.advance(input.grains, run.clone(), input.set))
+            .fold(Pace::STILL, Pace::and),
+    };
     let n_slabs = slabs.len();
     let n_grains: usize = ranges.iter().map(ExactSizeIterator::len).sum();
     let n_threads = threads_of(n_grains);

@@ -1,5 +1,6 @@
 //! Beds of grains against closed forms, a slow reference, and themselves.
 
+mod active_zone;
 mod conservation;
 mod determinism;
 mod failures;

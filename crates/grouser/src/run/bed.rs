@@ -84,7 +84,7 @@ pub fn key(scenario: &Scenario, soil: &Grains, time_step: f64) -> String {
         materials: &'a std::collections::BTreeMap<String, crate::scene::Material>,
         pairs: &'a [crate::scene::Pair],
         gravity_m_s2: [f64; 3],
-        dials: &'a crate::scene::Dials,
+        dials: crate::scene::Dials,
         time_step: f64,
     }
     let key = Key {
@@ -93,7 +93,8 @@ pub fn key(scenario: &Scenario, soil: &Grains, time_step: f64) -> String {
         materials: &scenario.materials,
         pairs: &scenario.pairs,
         gravity_m_s2: scenario.gravity_m_s2,
-        dials: &scenario.dials,
+        // Every grain of a settling bed is awake.
+        dials: crate::scene::Dials { active_zone: None, ..scenario.dials.clone() },
         time_step,
     };
     crate::scene::dialect().to_string(&key).expect("a scenario holds nothing RON cannot write")

@@ -30,6 +30,7 @@ mod time_step;
 mod tire;
 mod tool_ledger;
 mod vehicle_frames;
+mod zone;
 
 pub use bed::SETTLED_SOLID_FRACTION;
 pub use compose::run;
@@ -61,6 +62,9 @@ pub enum SetupError {
     /// The bed.
     #[error(transparent)]
     Bed(#[from] BedError),
+    /// The settled bed.
+    #[error("the settled bed cannot be used: {0}; remedy: {remedy}", remedy = .0.remedy())]
+    Motion(#[from] grouser_dem::Failure),
     /// The shape of a tool.
     #[error(transparent)]
     Shape(#[from] grouser_geometry::generate::ShapeError),

@@ -6,6 +6,7 @@ use super::on_bed::{Broken, Pass};
 use super::press_outcome;
 use super::rigid_tool::RigidTool;
 use super::tool_ledger::ToolLedger;
+use super::zone::ZoneWatch;
 use super::{Law, LawBed, Materials, Outcome, SetupError, level};
 use crate::output::{PolyData, Table};
 use crate::scene::{Motion, Scenario};
@@ -50,6 +51,7 @@ pub struct Pressing<L: Law> {
     sum: Wrench,
     table: Table,
     before: BedEnergy,
+    zone: ZoneWatch,
 }
 
 /// A tool that has reached its depth.
@@ -65,6 +67,8 @@ pub struct Pressed {
     pub table: Table,
     /// Where the work went.
     pub ledger: ToolLedger,
+    /// What the active zone did, where there is one.
+    pub zone: ZoneWatch,
 }
 
 impl<L: Law> Pass<L> for Pressing<L> {
@@ -94,6 +98,7 @@ impl<L: Law> Pass<L> for Pressing<L> {
         let material = Materials::of(scenario).number(&indenter.material);
         let tool = RigidTool::pressed(indenter.surface, lowest_point, press.speed_m_s, material)?;
         bed.keep_ledger(true);
+        let zone = ZoneWatch::begin(scenario, &mut bed, press.speed_m_s)?;
         let travel = lowest_point.z - level + press.depth_m;
         Ok(Self {
             before: bed.energy(),
@@ -109,10 +114,12 @@ impl<L: Law> Pass<L> for Pressing<L> {
             steps_per_sample: (scenario.outputs.sample_every_s / time_step).round().max(1.0) as u64,
             sum: Wrench::default(),
             table: Table::new(&COLUMNS),
+            zone,
         })
     }
 
     fn advance(&mut self, scenario: &Scenario) -> Result<(), Broken> {
+        self.zone.reach(scenario, &mut self.bed, &self.tool.surface_in_place());
         let (dt, largest_overlap) = (self.time_step, scenario.dials.largest_overlap);
         let n_steps = (self.n_steps - self.steps_done)
             .min(self.steps_per_sample - self.steps_done % self.steps_per_sample);
@@ -154,8 +161,8 @@ impl<L: Law> Pass<L> for Pressing<L> {
             self.tool.ledger(),
             self.tool.work_on_grains(),
         );
-        let Self { label, name, diameter, table, .. } = self;
-        Pressed { label, name, diameter, table, ledger }
+        let Self { label, name, diameter, table, zone, .. } = self;
+        Pressed { label, name, diameter, table, ledger, zone }
     }
 
     fn outcome(scenario: &Scenario, _: &LawBed<L>, done: &[Pressed]) -> Outcome {
@@ -166,6 +173,7 @@ impl<L: Law> Pass<L> for Pressing<L> {
 impl<L: Law> Pressing<L> {
     /// A row of the time series: loads are means since the last row, everything else is of this instant.
     fn sample(&mut self) {
+        self.zone.sample(&self.bed);
         let share = 1.0 / self.steps_per_sample as f64;
         let (force, moment) = (self.sum.force * share, self.sum.moment * share);
         self.sum = Wrench::default();

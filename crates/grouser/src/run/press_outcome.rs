@@ -213,6 +213,7 @@ impl<'a> Comparison<'a> {
                 unit: "-".into(),
                 ..Metric::default()
             });
+            metrics.extend(plate.zone.metrics(label));
         }
         if let Some(fit) = &self.fit {
             let of = |name: &str, unit: &str, pick: fn(&PlateFit) -> Estimated| Metric {

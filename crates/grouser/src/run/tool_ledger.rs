@@ -28,6 +28,8 @@ pub struct ToolLedger {
     pub turning: f64,
     /// Lost to background damping.
     pub background: f64,
+    /// Kinetic energy of grains when they fell asleep outside the active zone.
+    pub fallen_asleep: f64,
 }
 
 impl ToolLedger {
@@ -50,6 +52,7 @@ impl ToolLedger {
             sticking: lost(ContactLedger::dissipated) - normal_damping - sliding - turning,
             turning,
             background: after.background_damping - before.background_damping,
+            fallen_asleep: after.fallen_asleep - before.fallen_asleep,
         }
     }
 
@@ -60,7 +63,8 @@ impl ToolLedger {
 
     /// Energy lost [J].
     pub fn dissipated(&self) -> f64 {
-        self.normal_damping + self.sliding + self.sticking + self.turning + self.background
+        let by_contacts = self.normal_damping + self.sliding + self.sticking + self.turning;
+        by_contacts + self.background + self.fallen_asleep
     }
 
     /// What the ledger misses, over the larger of work and loss [-].
@@ -87,6 +91,7 @@ impl ToolLedger {
                 entry("lost by tangential dashpots and slackened springs", |l| l.sticking),
                 entry("spent on turning", |l| l.turning),
                 entry("lost to background damping", |l| l.background),
+                entry("taken from grains that fell asleep", |l| l.fallen_asleep),
             ],
         )
     }

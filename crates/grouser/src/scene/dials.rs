@@ -22,6 +22,29 @@ pub struct Dials {
     /// Overlap over the smaller radius at which the run is given up [-]. At 0.5 Hertz's force on a sphere in a half-space is 5 % too
     /// large.
     pub largest_overlap: f64,
+    /// Grains at rest and out of reach of the tool are held in place; left out, every grain is computed at every step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub active_zone: Option<ActiveZone>,
+}
+
+/// Which grains are computed. `docs/theory/active_zone.md` says what it saves and what error it makes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ActiveZone {
+    /// Distance from the tool's bounding box within which every grain is computed [m]; four to six times the tool's half width
+    /// is a safe choice.
+    pub reach_m: f64,
+    /// Speed below which a grain counts as at rest, over the tool's speed [-].
+    #[serde(default = "rest")]
+    pub rest: f64,
+    /// Change of the force on a sleeping block of grains, over that force when it fell asleep and the block's weight, beyond which
+    /// it wakes [-]; `inf` is never.
+    #[serde(default = "one")]
+    pub wake: f64,
+}
+
+fn rest() -> f64 {
+    0.01
 }
 
 impl Default for Dials {
@@ -34,6 +57,7 @@ impl Default for Dials {
             precision: Precision::default(),
             background_damping_n_s_m: 0.0,
             largest_overlap: grouser_dem::LARGEST_OVERLAP,
+            active_zone: None,
         }
     }
 }

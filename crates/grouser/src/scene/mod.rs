@@ -22,7 +22,9 @@ mod tool;
 mod validate;
 mod vehicle;
 
-pub use dials::{Dials, Dlr, Figures, Forces, Precision, RestitutionTail, Rolling, Rotation, Tilting};
+pub use dials::{
+    ActiveZone, Dials, Dlr, Figures, Forces, Precision, RestitutionTail, Rolling, Rotation, Tilting,
+};
 pub use locate::{Found, Path, locate};
 pub use material::{Material, Pair};
 pub use mesh::Mesh;

@@ -99,6 +99,9 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
         }
     }
     dials::validate(&mut check, &scenario.dials);
+    if let Some(zone) = &scenario.dials.active_zone {
+        dials::validate_zone(&mut check, scenario, zone);
+    }
     let fraction = scenario.dials.time_step_fraction;
     check.require(
         "dials.time_step_fraction",

@@ -38,25 +38,25 @@ fn threads_cache_interruptions_and_the_resolved_scenario_change_no_byte() {
     run("other-cache", "two", "one/scenario.ron", &["--threads", "2"]);
     assert!(results(&home.path().join("two")) == straight);
 
-    // Interrupted again and again, on other numbers of threads, in settling and in pressing.
-    let (out, mut n_interruptions) = (path("split"), 0);
+    let n_interruptions = interrupted_again_and_again(&path("cup.ron"), &path("split"), "", 12);
+    assert!(n_interruptions > 0, "no interruption came in time");
+    assert!(results(&home.path().join("split")) == straight, "after {n_interruptions} interruptions");
+}
+
+/// Runs a scene to its end through `most` interruptions, in settling (unless `cache` names a folder with its bed) and in pressing,
+/// on one thread and two by turns; gives how many came in time.
+fn interrupted_again_and_again(scene: &str, out: &str, cache: &str, most: u64) -> u64 {
+    let mut n_interruptions = 0;
     for attempt in 0..200 {
         let mut command = Command::new(env!("CARGO_BIN_EXE_grouser"));
-        command.args([
-            "run",
-            &path("cup.ron"),
-            "--out",
-            &out,
-            "--threads",
-            if attempt % 2 == 0 { "1" } else { "2" },
-        ]);
+        command.args(["run", scene, "--out", out, "--threads", if attempt % 2 == 0 { "1" } else { "2" }]);
         // A signal that comes before the program listens leaves nothing to go on from.
-        if Path::new(&out).join("checkpoint.bin").exists() {
+        if Path::new(out).join("checkpoint.bin").exists() {
             command.arg("--resume");
         }
-        command.env("GROUSER_CACHE", "").stderr(Stdio::null());
+        command.env("GROUSER_CACHE", cache).stderr(Stdio::null());
         let mut child = command.spawn().unwrap();
-        if attempt < 12 {
+        if attempt < most {
             std::thread::sleep(Duration::from_millis(450 + 37 * attempt));
             let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
         }
@@ -68,8 +68,31 @@ fn threads_cache_interruptions_and_the_resolved_scenario_change_no_byte() {
             other => panic!("exit status {other:?}"),
         }
     }
-    assert!(n_interruptions > 0, "no interruption came in time");
-    assert!(results(Path::new(&out)) == straight, "after {n_interruptions} interruptions");
+    n_interruptions
+}
+
+#[test]
+fn the_active_zone_and_every_precision_end_with_the_same_bytes_after_interruptions() {
+    let home = tempfile::tempdir().unwrap();
+    let path = |name: &str| home.path().join(name).display().to_string();
+    for (name, dials) in [
+        ("zone", "active_zone: (reach_m: 0.01)"),
+        ("mixed", "precision: Mixed"),
+        ("single", "precision: F32, active_zone: (reach_m: 0.01, wake: 0.5)"),
+    ] {
+        let scene = CUP.replace("outputs:", &format!("dials: ({dials}), outputs:"));
+        fs::write(path("cup.ron"), scene.replace("speed_m_s: 0.3", "speed_m_s: 0.1")).unwrap();
+        let (straight, split) = (home.path().join(name), home.path().join(name.to_owned() + "-split"));
+        let arguments = ["run", &path("cup.ron"), "--out", &straight.display().to_string(), "--threads", "2"];
+        let output = grouser(&home.path().join("cache"), &arguments);
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", errors(&output));
+        let split_path = split.display().to_string();
+        let n = interrupted_again_and_again(&path("cup.ron"), &split_path, &path("cache"), 4);
+        assert!(n > 0, "{name}: no interruption came in time");
+        assert!(results(&split) == results(&straight), "{name}: after {n} interruptions");
+        let summary = fs::read_to_string(straight.join("summary.json")).unwrap();
+        assert_eq!(summary.contains("grains awake, mean share"), dials.contains("active_zone"), "{name}");
+    }
 }
 
 #[test]

@@ -42,6 +42,12 @@ fn wrong_scenarios_are_refused_with_line_column_expectation_and_cause() {
             "cup.ron:9:",
             "is 0.0055",
         ),
+        (
+            "outputs:",
+            "dials: (active_zone: (reach_m: 0.02, wake: 0)), outputs:",
+            "cup.ron:13:",
+            "`dials.active_zone.wake` is 0",
+        ),
         ("gap_m: 0.001", "gap_m: -0.001", "cup.ron:12:", "the tool starts inside the bed"),
         ("young_pa: 1e7", "young_pa: 1e3", "cup.ron:4:", "the bed cannot carry its own weight"),
         ("material: \"steel\")", "material: \"steal\")", "cup.ron:11:", "there is no material \"steal\""),

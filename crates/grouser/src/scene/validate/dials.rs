@@ -2,7 +2,7 @@
 
 use super::Check;
 use crate::run::{Possible, with_law};
-use crate::scene::Dials;
+use crate::scene::{ActiveZone, Dials, Scenario, Soil};
 
 pub fn validate(check: &mut Check, dials: &Dials) {
     if let Err(error) = with_law(dials, Possible) {
@@ -34,4 +34,31 @@ pub fn validate(check: &mut Check, dials: &Dials) {
         "in (0, 0.5]: beyond, Hertz's force is more than 5 % off",
         "a length or a percentage; a bed that needs more is too soft for its load",
     );
+}
+
+/// Checks of the active zone.
+pub fn validate_zone(check: &mut Check, scenario: &Scenario, zone: &ActiveZone) {
+    check.positive("dials.active_zone.reach_m", zone.reach_m, "a distance from the tool [m]");
+    check.require(
+        "dials.active_zone.rest",
+        zone.rest,
+        zone.rest > 0.0 && zone.rest < 1.0,
+        "in (0, 1): a share of the tool's speed; 0.01 is a safe choice",
+        "a speed in m/s, or a percentage",
+    );
+    check.require(
+        "dials.active_zone.wake",
+        zone.wake,
+        zone.wake > 0.0,
+        "positive: a share of the force on a sleeping block; 1 is a safe choice, `inf` wakes nobody",
+        "a force in N, or a percentage",
+    );
+    if scenario.tool.is_none() || !matches!(scenario.soil, Soil::Grains(_)) {
+        check.fail(
+            "dials.active_zone",
+            "an active zone around no tool among grains",
+            "soil of grains, a tool and a motion",
+            "the tool was deleted or commented out, or the dial was copied from another scene",
+        );
+    }
 }
