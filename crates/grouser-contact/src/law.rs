@@ -146,6 +146,30 @@ impl<T: Real, A: Memory<T>, B: Memory<T>> Memory<T> for (A, B) {
     }
 }
 
+impl<T: Real> Blocked<T> for T {
+    type Block = Lanes<T>;
+    #[inline(always)]
+    fn store(self, block: &mut Self::Block, k: usize) {
+        block.0[k] = self;
+    }
+    #[inline(always)]
+    fn store_four(four: [Self; 4], block: &mut Self::Block, k: usize) {
+        block.0[k..k + 4].copy_from_slice(&four);
+    }
+    #[inline(always)]
+    fn load(block: &Self::Block, k: usize) -> Self {
+        block.0[k]
+    }
+}
+
+/// A number that is the same from both bodies.
+impl<T: Real> Memory<T> for T {
+    #[inline(always)]
+    fn seen_from_the_other(self) -> Self {
+        self
+    }
+}
+
 /// One number for each contact of a block, on its own cache lines.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]

@@ -9,7 +9,7 @@ use crate::sleepers::places;
 use crate::sweep::{is_shared, sweep};
 use crate::{BedEnergy, BedError, Domain, Failure, Grains, Plane, Rotation};
 use grouser_contact::{
-    ContactLaw, ContactLedger, F64, Frame, PairTable, Precision, Real, RotationLaw, Sphere,
+    ContactLaw, ContactLedger, F64, Frame, PairTable, Precision, Real, RotationLaw, Sphere, Vector,
 };
 use grouser_geometry::Vec3;
 use serde::{Deserialize, Serialize};
@@ -299,6 +299,18 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         BedError::check(&self.grains.spheres, &self.settings, table.n_materials())?;
         self.table = table;
         Ok(())
+    }
+
+    /// Grains turn, or are held, from now on; held ones lose their spin.
+    pub fn set_rotation(&mut self, rotation: Rotation) {
+        self.settings.rotation = rotation;
+        if rotation == Rotation::Fixed {
+            for (sphere, accelerations) in self.grains.spheres.iter_mut().zip(&mut self.grains.accelerations)
+            {
+                sphere.spin = Vector::ZERO;
+                accelerations[1] = Vector::ZERO;
+            }
+        }
     }
 
     /// Turns the ledger on or off; turned on, it begins with nothing spent and with what the contacts store by now.

@@ -138,19 +138,25 @@ pub struct TiltingSettings {
     pub inertia: GrainInertia,
     /// Angle within which the normal arm passes from one corner to the other [rad], in [0, 0.2]; 0 is the jump itself.
     pub smoothing_rad: f64,
+    /// Impact times π √(m*/k) over which the torque of a normal force builds up [-], in [0, 100]; 0 is P1's law at every instant.
+    /// Read by [`crate::Tilting`].
+    pub build_up: f64,
 }
 
 /// 0.29°: a grain on an incline topples where the closed form says, within half a degree.
 const DEFAULT_SMOOTHING: f64 = 5e-3;
+/// Five times the least at which beds rest under a friction angle of 55° (`docs/theory/tilting.md`).
+const DEFAULT_BUILD_UP: f64 = 10.0;
 
 impl TiltingSettings {
-    /// Inscribed arms and inertia, and a passage between corners within 0.005 rad (0.29°).
+    /// Inscribed arms and inertia, a passage between corners within 0.005 rad (0.29°), torques built up over ten impact times.
     pub fn of(shape: GrainShape) -> Self {
         Self {
             shape,
             arms: ArmNormalisation::Inscribed,
             inertia: GrainInertia::Inscribed,
             smoothing_rad: DEFAULT_SMOOTHING,
+            build_up: DEFAULT_BUILD_UP,
         }
     }
 
@@ -162,7 +168,10 @@ impl TiltingSettings {
         self.shape.validate()?;
         let width = self.smoothing_rad;
         let expected = "in [0, 0.2] rad: wider, the grain would rest on an edge";
-        ParameterError::check("smoothing width", width, (0.0..=0.2).contains(&width), expected)
+        ParameterError::check("smoothing width", width, (0.0..=0.2).contains(&width), expected)?;
+        let expected =
+            "in [0, 100] impact times: longer, grains that move with a tool would not feel their corners";
+        ParameterError::check("build-up", self.build_up, (0.0..=100.0).contains(&self.build_up), expected)
     }
 
     /// Principal moments of inertia over m r² [-]: about axis i that of the figure in plane i, without its scale.

@@ -10,10 +10,13 @@
 //! at −ℓ, ℓ = Σ h_i sgn(n·E_i) E_i, in units of the distance from the centre to the contact point; in each rotation plane ℓ has
 //! the components l_N and l_T. The torque is ℓ's, and the tangential spring feels the velocity of that corner: the torque of a
 //! normal force is then the slope of F_N ℓ·n, and what the tangential force spends is what the motion loses.
+//!
+//! The torque is that of a normal force F̄ ≤ F_N which follows F_N within some impact times: a law whose torques follow the elastic
+//! vibration of the overlap, while no force follows the turning, has an unsymmetric stiffness, and beds flutter.
 
 use crate::{
     ArmNormalisation, Body, Contact, Couples, PairProperties, ParameterError, PlaneShape, Quaternion, Real,
-    Response, RotationLaw, TiltingSettings, Vector,
+    Response, RotationLaw, TiltingSettings, Vector, hertz_stiffness,
 };
 use serde::{Deserialize, Serialize};
 
@@ -26,18 +29,22 @@ pub struct Tilting<const IS_ROUND: bool = false> {
     circles: [[f64; 3]; 3],
     /// Width w of the passage between corners [-], never zero.
     width: f64,
+    /// 1/(π × impact times of the build-up) [-]; [`AT_ONCE`] without.
+    following: f64,
     inertia_ratios: [f64; 3],
 }
 
 /// Width of a jump: any component of a normal that is not zero lies beyond it.
 const JUMP: f64 = 1e-30;
+/// A rate against which every other vanishes.
+const AT_ONCE: f64 = 1e30;
 /// Half sides of one axis in its two planes may differ by rounding of what a user types [-].
 const SAME_SIDE: f64 = 1e-6;
 
 impl<const IS_ROUND: bool> Default for Tilting<IS_ROUND> {
     /// A ball: no more than a place to read a checkpoint into.
     fn default() -> Self {
-        Self { half: [1.0; 3], circles: [[1.0; 3]; 3], width: 1.0, inertia_ratios: [0.4; 3] }
+        Self { half: [1.0; 3], circles: [[1.0; 3]; 3], width: 1.0, following: 1.0, inertia_ratios: [0.4; 3] }
     }
 }
 
@@ -60,6 +67,7 @@ impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
             half,
             circles,
             width: settings.smoothing_rad.max(JUMP),
+            following: (1.0 / (std::f64::consts::PI * settings.build_up)).min(AT_ONCE),
             inertia_ratios: settings.inertia_ratios(),
         })
     }
@@ -114,6 +122,24 @@ impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
         force.cross(self.lever(frame, normal, arm))
     }
 
+    /// The part F̄ [N] of the normal force that turns the bodies, `before` a step ago: dF̄/dt = (F_N − F̄)/τ with τ some times
+    /// π √(m*/k), k being the secant stiffness; F̄ ≤ F_N, and F̄ = 0 at first touch.
+    #[inline(always)]
+    fn built_up<T: Real>(
+        &self,
+        contact: &Contact<T>,
+        pair: &PairProperties<T>,
+        normal_force: T,
+        before: T,
+    ) -> T {
+        let contact_radius = (contact.effective_radius * contact.overlap).sqrt();
+        let stiffness = hertz_stiffness(pair.normal_modulus, contact_radius);
+        // Δt/τ
+        let step =
+            (stiffness / contact.effective_mass).sqrt() * (contact.time_step * T::from_f64(self.following));
+        ((before + normal_force * step) / (T::ONE + step)).min(normal_force)
+    }
+
     /// Levers of both bodies. From the second one the normal is opposite, and so is its lever: both are given for `normal`.
     #[inline(always)]
     fn levers<T: Real>(&self, normal: Vector<T>, bodies: &[Body<T, Quaternion<T>>; 2]) -> [Vector<T>; 2] {
@@ -162,7 +188,8 @@ fn longest_arm(half: &[f64; 3], circles: &[[f64; 3]; 3]) -> f64 {
 }
 
 impl<T: Real, const IS_ROUND: bool> RotationLaw<T> for Tilting<IS_ROUND> {
-    type Memory = ();
+    /// The part F̄ of the normal force that turns the bodies [N].
+    type Memory = T;
     type Frame = Quaternion<T>;
 
     /// Tangentially the corners' velocity, so that the tangential force spends what its torques take; along the normal that of the
@@ -183,19 +210,20 @@ impl<T: Real, const IS_ROUND: bool> RotationLaw<T> for Tilting<IS_ROUND> {
     fn couples(
         &self,
         contact: &Contact<T>,
-        _: &PairProperties<T>,
+        pair: &PairProperties<T>,
         response: &Response<T>,
         bodies: &[Body<T, Quaternion<T>>; 2],
-        (): (),
-    ) -> (Couples<T>, ()) {
-        let pushed = contact.normal * response.normal_force;
+        built_up: T,
+    ) -> (Couples<T>, T) {
+        let built_up = self.built_up(contact, pair, response.normal_force, built_up);
+        let pushed = contact.normal * built_up;
         let force = pushed + response.tangential_force;
         let levers = self.levers(contact.normal, bodies);
         let turned = bodies[0].spin.cross(levers[0]) + bodies[1].spin.cross(levers[1]);
         // What lifting the centres over the corners takes.
         let lifted = turned.dot(pushed);
         let torques = [force.cross(levers[0]), force.cross(levers[1])];
-        (Couples { torques, spent: lifted }, ())
+        (Couples { torques, spent: lifted }, built_up)
     }
 
     #[inline(always)]

@@ -191,7 +191,9 @@ fn force_times_velocity_is_what_the_motion_and_the_ledger_account_for() {
         let velocity = law.velocity_at_contact(normal, centres, &bodies);
         let contact = Contact { normal, velocity, ..touching(1e-5, velocity, 1e-6) };
         let (response, _) = HertzMindlin::<false, false>.respond(&contact, &pair, Vector::ZERO);
-        let (couples, ()) = law.couples(&contact, &pair, &response, &bodies, ());
+        let half = 0.5 * response.normal_force;
+        let (couples, built_up) = law.couples(&contact, &pair, &response, &bodies, half);
+        assert!(built_up > half && built_up < response.normal_force, "{built_up}");
         let force = normal * response.normal_force + response.tangential_force;
         let power = force.dot(centres)
             + couples.torques[0].dot(bodies[0].spin)
@@ -200,6 +202,35 @@ fn force_times_velocity_is_what_the_motion_and_the_ledger_account_for() {
             - couples.spent;
         assert!((power - accounted).abs() < 1e-9 * force.norm(), "{power} against {accounted}");
     }
+}
+
+#[test]
+fn the_torque_of_a_normal_force_builds_up_over_impact_times_and_falls_at_once() {
+    let pair = sand_pair(0.6);
+    let normal = Vector::new(0.0, 0.0, 1.0);
+    let contact = Contact { normal, ..touching(1e-5, Vector::ZERO, 1e-6) };
+    // τ = 10 π √(m*/k), k = F/δ.
+    let k = pair.normal_modulus * (contact.effective_radius * contact.overlap).sqrt();
+    let tau = 10.0 * PI * (contact.effective_mass / k).sqrt();
+    let response =
+        |normal_force| Response { normal_force, tangential_force: Vector::ZERO, energy: Default::default() };
+    let body = Body { arm: 0.01, spin: Vector::ZERO, inverse_moment: 1.0, frame: some_quaternion(4) };
+    let bodies = [body, Body::at_rest(body.frame)];
+    let share = |law: &Tilting<true>, force: f64, before: f64| {
+        let (couples, kept) = law.couples(&contact, &pair, &response(force), &bodies, before);
+        let full = law.torque(&body.frame, normal, normal * force, 0.01);
+        let expected = full * (kept / force);
+        assert!((couples.torques[0] - expected).norm() < 1e-12 * full.norm(), "{couples:?}");
+        kept
+    };
+    let cube = law(GrainShape::Cube, 5e-3);
+    let n_steps = (tau / contact.time_step) as usize;
+    let built_up = (0..n_steps).fold(0.0, |before, _| share(&cube, 3.0, before));
+    assert!((built_up / 3.0 - (1.0 - (-1.0_f64).exp())).abs() < 1e-3, "{built_up}");
+    assert_eq!(share(&cube, 1.0, built_up), 1.0);
+    let at_once =
+        Tilting::new(&TiltingSettings { build_up: 0.0, ..settings(GrainShape::Cube, 5e-3) }).unwrap();
+    assert!((share(&at_once, 3.0, 0.0) - 3.0).abs() < 1e-12);
 }
 
 #[test]

@@ -6,6 +6,7 @@ use grouser_contact::Real;
 use grouser_dem::{Bed, BedSettings, Domain, Layer, Plane, RadiusDistribution, random_packing};
 use grouser_geometry::Vec3;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Solid share of the volume that a settled bed is taken to have when its layers are filled [-].
 pub const SETTLED_SOLID_FRACTION: f64 = 0.60;
@@ -27,11 +28,43 @@ pub fn layers(soil: &Grains, materials: &Materials) -> Vec<Layer> {
     soil.layers.iter().map(of).collect()
 }
 
+/// The scene while its bed settles, where the soil asks for something else meanwhile.
+fn settling<'a>(scenario: &'a Scenario, soil: &Grains) -> Cow<'a, Scenario> {
+    let mut settling = Cow::Borrowed(scenario);
+    if let Some(friction) = soil.settle.friction {
+        let scenario = settling.to_mut();
+        scenario.materials.values_mut().for_each(|m| m.friction = m.friction.min(friction));
+        scenario.pairs.iter_mut().for_each(|pair| pair.friction = pair.friction.min(friction));
+    }
+    if soil.settle.is_turning && scenario.dials.rotation == Rotation::Fixed {
+        settling.to_mut().dials.rotation = Rotation::Free;
+    }
+    settling
+}
+
+/// A settled bed with the friction and the rotation of the scene from now on.
+///
+/// # Errors
+/// When a constant is out of range, which a checked scenario excludes.
+pub fn in_use<L: Law>(mut bed: LawBed<L>, scenario: &Scenario) -> Result<LawBed<L>, SetupError> {
+    bed.set_pair_table(Materials::of(scenario).table()?)?;
+    bed.set_rotation(rotation(scenario));
+    Ok(bed)
+}
+
+fn rotation(scenario: &Scenario) -> grouser_dem::Rotation {
+    match scenario.dials.rotation {
+        Rotation::Fixed => grouser_dem::Rotation::Fixed,
+        _ => grouser_dem::Rotation::Free,
+    }
+}
+
 /// A loose packing in its box, about to fall.
 ///
 /// # Errors
 /// When the packing or the bed is refused.
 pub fn loose_bed<L: Law>(scenario: &Scenario, soil: &Grains, law: L) -> Result<LawBed<L>, SetupError> {
+    let scenario = &*settling(scenario, soil);
     let materials = Materials::of(scenario);
     let wall = materials.number(&soil.container.material);
     let size = Vec3::from(soil.container.size_m);
@@ -58,10 +91,7 @@ pub fn loose_bed<L: Law>(scenario: &Scenario, soil: &Grains, law: L) -> Result<L
         domain,
         planes,
         gravity: Vec3::from(scenario.gravity_m_s2),
-        rotation: match scenario.dials.rotation {
-            Rotation::Fixed => grouser_dem::Rotation::Fixed,
-            _ => grouser_dem::Rotation::Free,
-        },
+        rotation: rotation(scenario),
         has_ledger: false,
     };
     let table = materials.table_with_friction_up_to(soil.settle.friction.unwrap_or(f64::INFINITY))?;
@@ -77,6 +107,7 @@ pub fn loose_bed<L: Law>(scenario: &Scenario, soil: &Grains, law: L) -> Result<L
 
 /// Everything that a settled bed depends on, as a text: beds with the same key have the same bytes.
 pub fn key(scenario: &Scenario, soil: &Grains, time_step: f64) -> String {
+    let scenario = &*settling(scenario, soil);
     #[derive(Serialize)]
     struct Key<'a> {
         version: &'a str,

@@ -229,6 +229,7 @@ mod tests {
             arms: Default::default(),
             inertia: Default::default(),
             smoothing_rad: 0.01,
+            build_up: 10.0,
             figures: Figures::OneBody,
         };
         let dials = Dials { rotation: Rotation::Tilting(angular), ..Dials::default() };

@@ -3,7 +3,7 @@
 
 use super::experiment::{Advanced, Outcome, Status};
 use super::{
-    Experiment, Law, LawBed, Materials, Progress, RunError, SetupError, bed, cache, level, time_step,
+    Experiment, Law, LawBed, Progress, RunError, SetupError, bed, cache, level, time_step,
 };
 use crate::output::PolyData;
 use crate::output::summary::{self, Metric};
@@ -103,10 +103,10 @@ impl<L: Law, P: Pass<L>> OnBed<L, P> {
         let time_step = time_step(scenario, soil).map_err(SetupError::from)?.step_s;
         let mut begun = Self {
             time_step,
-            stage: match cache::find(&bed::key(scenario, soil, time_step)) {
+            stage: match cache::find::<LawBed<L>>(&bed::key(scenario, soil, time_step)) {
                 Some((bed, settled)) => {
                     progress.note("the settled bed was found in the cache");
-                    Stage::Passing { settled, bed: Box::new(bed), pass: None }
+                    Stage::Passing { settled, bed: Box::new(bed::in_use::<L>(bed, scenario)?), pass: None }
                 }
                 None => {
                     let criterion = SettleCriterion {
@@ -156,13 +156,10 @@ impl<L: Law, P: Pass<L>> OnBed<L, P> {
                 SetupError::NotSettled { longest_s, ratio: settled.kinetic_energy_ratio, asked }.into()
             );
         }
-        if soil.settle.friction.is_some() {
-            let table = Materials::of(scenario).table().map_err(SetupError::from)?;
-            bed.set_pair_table(table).map_err(SetupError::from)?;
-        }
         cache::keep(&bed::key(scenario, soil, time_step), &**bed, settled);
         progress.note(&format!("the bed settled within {:.3} s of simulated time", settled.time_s));
-        self.stage = Stage::Passing { settled, bed: bed.clone(), pass: None };
+        let bed = Box::new(bed::in_use::<L>((**bed).clone(), scenario)?);
+        self.stage = Stage::Passing { settled, bed, pass: None };
         self.begin_pass(scenario)?;
         Ok(Advanced { checkpoint_due: true, is_done: self.is_done(), ..Advanced::default() })
     }

@@ -152,6 +152,9 @@ pub struct Tilting {
     /// Width of the passage between two corners [rad].
     #[serde(default = "smoothing")]
     pub smoothing_rad: f64,
+    /// Impact times over which the torque of a normal force builds up [-]; 0 is the law as printed at every instant.
+    #[serde(default = "build_up")]
+    pub build_up: f64,
     /// Whether the three figures are sections of one body.
     #[serde(default)]
     pub figures: Figures,
@@ -161,11 +164,15 @@ fn smoothing() -> f64 {
     TiltingSettings::of(GrainShape::Cube).smoothing_rad
 }
 
+fn build_up() -> f64 {
+    TiltingSettings::of(GrainShape::Cube).build_up
+}
+
 impl Tilting {
     /// The same for the contact law.
     pub fn settings(&self) -> TiltingSettings {
-        let Self { shape, arms, inertia, smoothing_rad, .. } = *self;
-        TiltingSettings { shape, arms, inertia, smoothing_rad }
+        let Self { shape, arms, inertia, smoothing_rad, build_up, .. } = *self;
+        TiltingSettings { shape, arms, inertia, smoothing_rad, build_up }
     }
 }
 

@@ -134,11 +134,13 @@ pub struct Settle {
     /// Largest friction while the bed settles [-], of all pairs; afterwards every pair has its own. A small one packs the bed
     /// densely, as tamping does; without it the bed is as loose as it falls.
     pub friction: Option<f64>,
+    /// Grains that `dials.rotation: Fixed` holds turn freely while the bed settles: it is then the bed of free rotation.
+    pub is_turning: bool,
 }
 
 impl Default for Settle {
     fn default() -> Self {
-        Settle { energy_ratio: 1e-5, longest_s: 5.0, friction: None }
+        Settle { energy_ratio: 1e-5, longest_s: 5.0, friction: None, is_turning: false }
     }
 }
 
