@@ -2,14 +2,15 @@
 
 use crate::active_zone::Zone;
 use crate::force_pass::{InstructionSet, PassInput};
-use crate::integrate::{Motion, Pace, Stages, Turning};
+use crate::integrate::{Integrator, Motion, Pace, Stages, Turning};
 use crate::neighbours::Neighbours;
 use crate::shared_grains::SharedGrains;
 use crate::sleepers::places;
 use crate::sweep::{is_shared, sweep};
 use crate::{BedEnergy, BedError, Domain, Failure, Grains, Plane, Rotation};
 use grouser_contact::{
-    ContactLaw, ContactLedger, F64, Frame, PairTable, Precision, Real, RotationLaw, Sphere, Vector,
+    ContactLaw, ContactLedger, F64, Frame, PairTable, ParameterError, Precision, Real, RotationLaw, Sphere,
+    Vector,
 };
 use grouser_geometry::Vec3;
 use serde::{Deserialize, Serialize};
@@ -47,6 +48,7 @@ pub struct Bed<L: ContactLaw<P::Real>, P: Precision = F64> {
     /// Coefficient of the damping of absolute velocities [N·s/m], and what it has taken so far [J].
     background: [f64; 2],
     pub(crate) largest_overlap: f64,
+    integrator: Integrator,
     #[serde(skip, default = "InstructionSet::detect")]
     pub(crate) set: InstructionSet,
 }
@@ -83,6 +85,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
             zone: None,
             background: [0.0; 2],
             largest_overlap: LARGEST_OVERLAP,
+            integrator: Integrator::default(),
             set,
         })
     }
@@ -186,6 +189,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
             self.settings.rotation,
             stages,
             Turning::new(self.grains.inertia_ratios),
+            self.integrator,
         )
     }
 
@@ -231,7 +235,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
             return Err(Failure::OverlapTooLarge { grain, position, depth });
         }
         self.grains.fastest = pace.fastest_squared.sqrt();
-        let travel = self.grains.fastest * time_step;
+        let travel = self.grains.fastest * time_step * self.integrator.reach();
         let has_changed = self.zone.as_mut().is_some_and(|zone| {
             zone.look(&mut self.grains, time_step, self.settings.gravity.norm());
             zone.has_changed
@@ -289,6 +293,16 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     /// Constants of every pair of materials.
     pub fn pair_table(&self) -> &PairTable<P::Real> {
         &self.table
+    }
+
+    /// Grains go on by `integrator` from now on; Verlet's scheme is the default.
+    ///
+    /// # Errors
+    /// When a share is outside the range in which Newmark's scheme is stable.
+    pub fn set_integrator(&mut self, integrator: Integrator) -> Result<(), ParameterError> {
+        integrator.validate()?;
+        self.integrator = integrator;
+        Ok(())
     }
 
     /// Replaces the constants of every pair of materials; what contacts remember stays.

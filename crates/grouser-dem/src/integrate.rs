@@ -1,6 +1,8 @@
 //! Velocity Verlet with positions and velocities at the same instant whenever contacts are evaluated.
 //!
 //! Predict: x ← x + v Δt + ½ a Δt², v* = v + a Δt. Forces at (x, v*) give a′. Correct: v = v* + ½ (a′ − a) Δt.
+//! Newmark's scheme (N. M. Newmark, J. Eng. Mech. 85 (1959) 67–94), semi-implicit as in P1: the same predictor, and the corrector
+//! x += β (a′ − a) Δt², v = v* + γ (a′ − a) Δt, once a step; Verlet is β = 0, γ = ½.
 //! The usual half-step form evaluates dashpots with a velocity half a step old, which sticks at size ratios above three.
 
 use crate::force_pass::InstructionSet;
@@ -10,9 +12,52 @@ use crate::grains::{Grains, Rotation};
 #[cfg(target_arch = "x86_64")]
 use crate::quads;
 use crate::shared_grains::SharedGrains;
-use grouser_contact::{Load, Precision, Real, Sphere, Vector};
+use grouser_contact::{Load, ParameterError, Precision, Real, Sphere, Vector};
 use grouser_geometry::Vec3;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
+
+/// How grains go on from step to step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Integrator {
+    /// Velocity Verlet.
+    #[default]
+    VelocityVerlet,
+    /// Newmark's scheme with one corrector a step; β = ¼, γ = ½ is the mean acceleration.
+    Newmark {
+        /// Share β of the change of acceleration in the position, in [0, ½] [-].
+        beta: f64,
+        /// Share γ of the change of acceleration in the velocity, in [½, 1] [-].
+        gamma: f64,
+    },
+}
+
+impl Integrator {
+    /// Refuses shares outside the range of the scheme.
+    ///
+    /// # Errors
+    /// Names the share, its range and the reason.
+    pub fn validate(self) -> Result<(), ParameterError> {
+        let [beta, gamma] = self.shares();
+        let expected = "in [0, 0.5]: more, a grain would overshoot the place that its force asks for";
+        ParameterError::check("Newmark's beta", beta, (0.0..=0.5).contains(&beta), expected)?;
+        let expected = "in [0.5, 1]: less, the scheme yields energy";
+        ParameterError::check("Newmark's gamma", gamma, (0.5..=1.0).contains(&gamma), expected)
+    }
+
+    /// β and γ [-].
+    fn shares(self) -> [f64; 2] {
+        match self {
+            Self::VelocityVerlet => [0.0, 0.5],
+            Self::Newmark { beta, gamma } => [beta, gamma],
+        }
+    }
+
+    /// Bound of the way in a step over speed times step [-]: corrected, no grain turns round faster than by twice its speed.
+    pub(crate) fn reach(self) -> f64 {
+        1.0 + 2.0 * self.shares()[0]
+    }
+}
 
 /// Fastest grain seen by a predictor, and whether every number was finite.
 #[derive(Clone, Copy, Debug)]
@@ -53,13 +98,38 @@ pub(crate) struct Motion<T> {
     pub rotation: Rotation,
     pub stages: Stages,
     pub turning: Turning,
+    /// β Δt² [s²]; zero for Verlet.
+    pub placing: T,
+    /// γ Δt [s].
+    pub hastening: T,
 }
 
 impl<T: Real> Motion<T> {
     /// Motion with a step [s] under gravity [m/s²].
-    pub fn new(time_step: f64, gravity: Vec3, rotation: Rotation, stages: Stages, turning: Turning) -> Self {
+    pub fn new(
+        time_step: f64,
+        gravity: Vec3,
+        rotation: Rotation,
+        stages: Stages,
+        turning: Turning,
+        integrator: Integrator,
+    ) -> Self {
         let gravity = Vector::new(gravity.x, gravity.y, gravity.z).cast();
-        Self { time_step: T::from_f64(time_step), gravity, rotation, stages, turning }
+        let [beta, gamma] = integrator.shares();
+        Self {
+            time_step: T::from_f64(time_step),
+            gravity,
+            rotation,
+            stages,
+            turning,
+            placing: T::from_f64(beta * time_step * time_step),
+            hastening: T::from_f64(gamma) * T::from_f64(time_step),
+        }
+    }
+
+    /// Verlet's scheme, which vector instructions are written for.
+    fn is_verlet(&self) -> bool {
+        self.placing == T::ZERO && self.hastening == T::from_f64(0.5) * self.time_step
     }
 
     /// The stages that follow the force pass, for a range of grains.
@@ -85,7 +155,7 @@ impl<T: Real> Motion<T> {
             return watch.pace();
         }
         #[cfg(target_arch = "x86_64")]
-        if set != InstructionSet::Baseline && self.rotation == Rotation::Free {
+        if set != InstructionSet::Baseline && self.rotation == Rotation::Free && self.is_verlet() {
             let advanced = in_quads!(P, Q => {
                 // SAFETY: `Q` is `P`, so that these are the same types; `detect` found AVX2 on this machine.
                 unsafe {
@@ -112,11 +182,11 @@ impl<T: Real> Motion<T> {
     /// Corrects the grains of a range.
     pub fn correct_all<P: Precision<Real = T>>(&self, grains: &mut Grains<P>, range: Range<usize>) {
         let Grains { spheres, loads, accelerations, orientations, .. } = grains;
-        let orientations = orientations.as_ref().map(|all| &all[range.clone()]);
+        let orientations = orientations.as_mut().map(|all| &mut all[range.clone()]);
         let (spheres, loads) = (&mut spheres[range.clone()], &loads[range.clone()]);
         let accelerations = &mut accelerations[range];
         if let Some(orientations) = orientations {
-            for (index, orientation) in orientations.iter().enumerate() {
+            for (index, orientation) in orientations.iter_mut().enumerate() {
                 self.correct_turned(
                     &mut spheres[index],
                     &loads[index],
@@ -159,17 +229,25 @@ impl<T: Real> Motion<T> {
         load: &Load<T>,
         [linear, angular]: &mut [Vector<T>; 2],
     ) {
-        let half_step = T::from_f64(0.5) * self.time_step;
         // One division serves 1/m and 1/J = 1/(2/5 m r²).
         let inertia_per_mass = sphere.inertia_per_mass();
         let inverse = T::ONE / (sphere.mass * inertia_per_mass);
         let after = load.force * (inverse * inertia_per_mass) + self.gravity;
-        sphere.velocity += (after - *linear) * half_step;
+        self.correct_centre(sphere, after - *linear);
         *linear = after;
         if self.rotation == Rotation::Free {
             let after = load.torque * inverse;
-            sphere.spin += (after - *angular) * half_step;
+            sphere.spin += (after - *angular) * self.hastening;
             *angular = after;
+        }
+    }
+
+    /// Velocity and place with the change of acceleration over the step [m/s²].
+    #[inline(always)]
+    pub fn correct_centre<P: Precision<Real = T>>(&self, sphere: &mut Sphere<P>, change: Vector<T>) {
+        sphere.velocity += change * self.hastening;
+        if self.placing > T::ZERO {
+            sphere.position += (change * self.placing).cast();
         }
     }
 

@@ -71,6 +71,7 @@ pub use error::BedError;
 pub use failure::Failure;
 pub use force_pass::InstructionSet;
 pub use grains::{Grains, Rotation, sphere};
+pub use integrate::Integrator;
 pub use packing::{Layer, PackingError, RadiusDistribution, random_packing};
 pub use plane::Plane;
 pub use settle::{SettleCriterion, Settled, Settling};

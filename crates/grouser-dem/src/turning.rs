@@ -47,28 +47,32 @@ impl<T: Real> Motion<T> {
         sphere: &mut Sphere<P>,
         load: &Load<T>,
         [linear, angular]: &mut [Vector<T>; 2],
-        orientation: &Orientation,
+        orientation: &mut Orientation,
     ) {
-        let half_step = T::from_f64(0.5) * self.time_step;
         let radius = T::from_f64(sphere.radius.to_f64());
         // One division serves 1/m and 1/(m r²).
         let inverse = T::ONE / (sphere.mass * radius * radius);
         let after = load.force * (inverse * radius * radius) + self.gravity;
-        sphere.velocity += (after - *linear) * half_step;
+        self.correct_centre(sphere, after - *linear);
         *linear = after;
         if self.rotation == Rotation::Fixed {
             return;
         }
-        if self.turning.is_spherical {
+        let change = if self.turning.is_spherical {
             let after = load.torque * (inverse * T::from_f64(1.0 / self.turning.ratios.x));
-            sphere.spin += (after - *angular) * half_step;
+            let change = after - *angular;
             *angular = after;
+            change
         } else {
             // Torque over m r² stands for the angular acceleration.
             let after = load.torque * inverse;
-            let gained = wide((after - *angular) * half_step);
-            sphere.spin += narrow(self.turning.spin(gained, orientation));
+            let change = wide(after - *angular);
             *angular = after;
+            narrow(self.turning.spin(change, orientation))
+        };
+        sphere.spin += change * self.hastening;
+        if self.placing > T::ZERO {
+            turn(orientation, wide(change), self.placing.to_f64());
         }
     }
 

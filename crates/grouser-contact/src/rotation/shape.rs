@@ -174,6 +174,17 @@ impl TiltingSettings {
         ParameterError::check("build-up", self.build_up, (0.0..=100.0).contains(&self.build_up), expected)
     }
 
+    /// How much faster than one of equal mass that does not turn the point of a grain where it is touched gives way, at most [-]:
+    /// 1 + |ℓ|²/(J/m) with the smallest principal moment J; 7/2 for a sphere.
+    pub fn mobility(&self) -> f64 {
+        // The diagonal of a box whose sections have a half diagonal of 1 at most, or half sides of 1 at most.
+        let longest_squared = match self.arms {
+            ArmNormalisation::Inscribed => 1.5,
+            ArmNormalisation::LongSide => 3.0,
+        };
+        1.0 + longest_squared / self.inertia_ratios().into_iter().fold(f64::INFINITY, f64::min)
+    }
+
     /// Principal moments of inertia over m r² [-]: about axis i that of the figure in plane i, without its scale.
     pub(crate) fn inertia_ratios(&self) -> [f64; 3] {
         self.shape.planes().map(|plane| match (plane, self.inertia) {

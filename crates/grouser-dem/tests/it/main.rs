@@ -5,6 +5,7 @@ mod conservation;
 mod determinism;
 mod failures;
 mod impact;
+mod integrators;
 mod reference_kernel;
 mod rotation;
 mod size_ratio;

@@ -263,7 +263,7 @@ fn cubes_at_55_degrees(build_up: f64) -> f64 {
     let mut bed = Bed::new(spheres, settings, table(0.3, 0.3, Tail::CutCorrected), law).unwrap();
     bed.grains_mut().turn_randomly(3);
     go_on(&mut bed, 30_000);
-    bed.set_pair_table(table(0.3, 1.428, Tail::CutCorrected));
+    bed.set_pair_table(table(0.3, 1.428, Tail::CutCorrected)).unwrap();
     go_on(&mut bed, 20_000);
     let energy = bed.energy();
     (energy.kinetic + energy.rotational) / scale

@@ -97,6 +97,7 @@ pub fn loose_bed<L: Law>(scenario: &Scenario, soil: &Grains, law: L) -> Result<L
     let table = materials.table_with_friction_up_to(soil.settle.friction.unwrap_or(f64::INFINITY))?;
     let mut bed = Bed::new(spheres, settings, table, law)?;
     bed.set_largest_overlap(scenario.dials.largest_overlap);
+    bed.set_integrator(scenario.dials.integrator)?;
     bed.set_background_damping(scenario.dials.background_damping_n_s_m);
     // Angular grains lie in any direction; the same seed gives the same ones.
     if bed.grains().orientations.is_some() {

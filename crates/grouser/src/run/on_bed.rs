@@ -2,9 +2,7 @@
 //! own copy.
 
 use super::experiment::{Advanced, Outcome, Status};
-use super::{
-    Experiment, Law, LawBed, Progress, RunError, SetupError, bed, cache, level, time_step,
-};
+use super::{Experiment, Law, LawBed, Progress, RunError, SetupError, bed, cache, level, time_step};
 use crate::output::PolyData;
 use crate::output::summary::{self, Metric};
 use crate::scene::{Grains, Scenario};

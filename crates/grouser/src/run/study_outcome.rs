@@ -101,10 +101,15 @@ fn table_of_variants(study: &Study, results: &[VariantResult]) -> Section {
 fn groups<'a>(
     study: &Study,
     by: &[String],
+    only: &BTreeMap<String, Vec<String>>,
     results: &'a [VariantResult],
 ) -> Vec<(String, Vec<&'a VariantResult>)> {
     let mut groups: Vec<(String, Vec<&VariantResult>)> = Vec::new();
-    for result in results {
+    let is_drawn = |result: &&VariantResult| {
+        let mut axes = only.iter().filter_map(|(name, labels)| Some((study.axis(name)?, labels)));
+        axes.all(|(axis, labels)| labels.contains(&result.labels[axis]))
+    };
+    for result in results.iter().filter(is_drawn) {
         let key = result.key(study, by);
         match groups.iter_mut().find(|(other, _)| *other == key) {
             Some((_, members)) => members.push(result),
@@ -116,7 +121,8 @@ fn groups<'a>(
 
 fn curves_chart(study: &Study, curves: &Curves, results: &[VariantResult]) -> Chart {
     let mut chart = Chart { title: curves.title.clone(), ..Chart::default() };
-    for (colour, (name, members)) in groups(study, &curves.by, results).into_iter().enumerate() {
+    for (colour, (name, members)) in groups(study, &curves.by, &curves.only, results).into_iter().enumerate()
+    {
         let tables: Vec<Table> = members.iter().filter_map(|member| member.table(&curves.table)).collect();
         let lines: Vec<Line> = tables
             .iter()
@@ -188,7 +194,7 @@ fn trend_chart(study: &Study, trend: &Trend, results: &[VariantResult]) -> Chart
         let number = study.axes[axis].values.iter().position(|choice| choice.label == *label);
         label.parse::<f64>().unwrap_or(number.unwrap_or(0) as f64)
     };
-    for (colour, (name, members)) in groups(study, &trend.by, results).into_iter().enumerate() {
+    for (colour, (name, members)) in groups(study, &trend.by, &trend.only, results).into_iter().enumerate() {
         let points: Vec<(f64, f64)> = members
             .iter()
             .filter_map(|member| Some((place(&member.labels[axis]), member.metric(&trend.metric)?)))

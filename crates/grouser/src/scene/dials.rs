@@ -1,6 +1,7 @@
 //! The dials between speed and accuracy.
 
 use grouser_contact::{ArmNormalisation, GrainInertia, GrainShape, TiltingSettings};
+pub use grouser_dem::Integrator;
 use serde::{Deserialize, Serialize};
 
 /// Choices that change cost and accuracy but not what the scene is.
@@ -17,6 +18,8 @@ pub struct Dials {
     pub rotation: Rotation,
     /// Scalars that grains are computed with.
     pub precision: Precision,
+    /// How grains go on from step to step.
+    pub integrator: Integrator,
     /// Damping of every grain's absolute velocity [N·s/m]; 0 is off.
     pub background_damping_n_s_m: f64,
     /// Overlap over the smaller radius at which the run is given up [-]. At 0.5 Hertz's force on a sphere in a half-space is 5 % too
@@ -55,6 +58,7 @@ impl Default for Dials {
             forces: Forces::default(),
             rotation: Rotation::default(),
             precision: Precision::default(),
+            integrator: Integrator::default(),
             background_damping_n_s_m: 0.0,
             largest_overlap: grouser_dem::LARGEST_OVERLAP,
             active_zone: None,

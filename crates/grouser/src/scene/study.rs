@@ -55,6 +55,9 @@ pub struct Curves {
     pub y: String,
     /// Axes that tell the curves apart; over the others the mean is drawn, with the lowest and the highest.
     pub by: Vec<String>,
+    /// Labels that are drawn, by axis; all of an axis that is not named.
+    #[serde(default)]
+    pub only: BTreeMap<String, Vec<String>>,
 }
 
 /// A metric over an axis.
@@ -70,6 +73,9 @@ pub struct Trend {
     /// Axes that tell the lines apart; over the others the mean is drawn, with a ring for each.
     #[serde(default)]
     pub by: Vec<String>,
+    /// Labels that are drawn, by axis; all of an axis that is not named.
+    #[serde(default)]
+    pub only: BTreeMap<String, Vec<String>>,
 }
 
 /// One combination.

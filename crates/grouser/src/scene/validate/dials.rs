@@ -18,6 +18,14 @@ pub fn validate(check: &mut Check, dials: &Dials) {
             "a ratio the wrong way round, a percentage, or parts of two laws",
         );
     }
+    if let Err(error) = dials.integrator.validate() {
+        check.fail(
+            "dials.integrator",
+            &format!("`dials.integrator`: {} = {} is not possible", error.name, error.value),
+            error.expected,
+            "the two shares the wrong way round",
+        );
+    }
     let damping = dials.background_damping_n_s_m;
     check.require(
         "dials.background_damping_n_s_m",

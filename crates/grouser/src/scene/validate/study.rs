@@ -27,7 +27,23 @@ pub fn validate(check: &mut Check, study: &Study) {
         .iter()
         .enumerate()
         .map(|(i, t)| (format!("study.trends[{i}].over"), [t.by.clone(), vec![t.over.clone()]].concat()));
-    for (path, asked) in by_curves.chain(by_trends) {
+    let only_curves =
+        study.curves.iter().enumerate().map(|(i, c)| (format!("study.curves[{i}].only"), &c.only));
+    let only_trends =
+        study.trends.iter().enumerate().map(|(i, t)| (format!("study.trends[{i}].only"), &t.only));
+    let only: Vec<_> = only_curves.chain(only_trends).collect();
+    for (path, labels) in &only {
+        for (name, asked) in labels.iter() {
+            let Some(axis) = study.axis(name) else { continue };
+            let known: Vec<&str> = study.axes[axis].values.iter().map(|v| v.label.as_str()).collect();
+            if !asked.iter().any(|label| known.contains(&label.as_str())) {
+                let what = format!("none of these labels is on the axis \"{name}\"");
+                check.fail(path, &what, &format!("one of {}", known.join(", ")), "a misspelt label");
+            }
+        }
+    }
+    let by_only = only.iter().map(|(path, labels)| (path.clone(), labels.keys().cloned().collect()));
+    for (path, asked) in by_curves.chain(by_trends).chain(by_only) {
         for name in asked.iter().filter(|name| !names.contains(&name.as_str())) {
             let what = format!("there is no axis \"{name}\"");
             check.fail(&path, &what, &format!("one of {}", names.join(", ")), "a misspelt name");
