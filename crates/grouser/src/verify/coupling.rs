@@ -1,13 +1,12 @@
 //! Cases of grains on surfaces that deform, and on elastic solids.
 
 use super::Row;
-use grouser_contact::{
-    F64, HertzMindlin, Interaction, Load, Material, PairTable, ParameterError, Sphere, Tail, Vector,
-};
+use grouser_contact::{F64, HertzMindlin, Interaction, Load, Material, PairTable, Sphere, Tail, Vector};
 use grouser_coupling::{DeformingContacts, Margin, Mirror, Step};
 use grouser_fem::{DynamicsError, Formulation, Material as Elastic, Settings, Solid};
 use grouser_geometry::generate::{cone, plane};
 use grouser_geometry::{Orientation, TriangleSurface, Vec3, box_mesh};
+use std::sync::LazyLock;
 
 type Contacts = DeformingContacts<Vector<f64>>;
 
@@ -17,11 +16,11 @@ const RADIUS: f64 = 0.01;
 /// A bead and a surface of the same stuff.
 const GLASS: Material = Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 2500.0 };
 
-fn table() -> PairTable {
-    let made: Result<PairTable, ParameterError> =
-        PairTable::new(&[GLASS], Tail::CutCorrected, |_, _| Interaction { restitution: 0.5, friction: 0.5 });
-    made.expect("these constants are in range")
-}
+/// Their constants; the correction of the tail is found once.
+static TABLE: LazyLock<PairTable> = LazyLock::new(|| {
+    let interaction = |_, _| Interaction { restitution: 0.5, friction: 0.5 };
+    PairTable::new(&[GLASS], Tail::CutCorrected, interaction).expect("these constants are in range")
+});
 
 fn bead(centre: Vec3) -> Sphere<F64> {
     let position = Vector::new(centre.x, centre.y, centre.z);
@@ -30,7 +29,7 @@ fn bead(centre: Vec3) -> Sphere<F64> {
 
 /// Hertz's force of the bead on a rigid surface of its own stuff at an overlap [N].
 fn hertz(overlap: f64) -> f64 {
-    table().pair(0, 0).normal_modulus * RADIUS.sqrt() * overlap.powf(1.5)
+    TABLE.pair(0, 0).normal_modulus * RADIUS.sqrt() * overlap.powf(1.5)
 }
 
 fn of(v: Vector<f64>) -> Vec3 {
@@ -44,8 +43,8 @@ fn contacts(surface: &TriangleSurface) -> Contacts {
 }
 
 fn load(contacts: &mut Contacts, sphere: Sphere<F64>) -> Load<f64> {
-    let (table, mut loads) = (table(), [Load::default()]);
-    let step = Step { law: &LAW, table: &table, time_step: 1e-5, fastest: 3.0 };
+    let mut loads = [Load::default()];
+    let step = Step { law: &LAW, table: &*TABLE, time_step: 1e-5, fastest: 3.0 };
     contacts.forces((&[sphere], &[0]), &mut loads, &step, |_| ());
     loads[0]
 }
@@ -111,7 +110,6 @@ struct Impact {
     contacts: Contacts,
     bead: Sphere<F64>,
     load: Load<f64>,
-    table: PairTable,
 }
 
 impl Impact {
@@ -134,7 +132,6 @@ impl Impact {
             solid,
             bead,
             load: Load::default(),
-            table: table(),
         }
     }
 
@@ -162,7 +159,7 @@ impl Impact {
         };
         self.contacts.follow(|node| solid.position(node), ahead);
         let mut loads = [Load::default()];
-        let step = Step { law: &LAW, table: &self.table, time_step: dt, fastest: 3.0 };
+        let step = Step { law: &LAW, table: &*TABLE, time_step: dt, fastest: 3.0 };
         self.contacts.forces((&[self.bead], &[0]), &mut loads, &step, |_| ());
         self.load = loads[0];
         self.kick_bead(dt / 2.0);
