@@ -474,6 +474,8 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
     fn respond<const LEDGER: bool>(&mut self, from: usize, used: usize, law: &L, time_step: T) {
         let lanes =
             |group: &[Lanes<T>; 3], k: usize| Vector::new(group[0].0[k], group[1].0[k], group[2].0[k]);
+        // Read here: read inside the loop it might be what a lane's store has changed, and nothing would become a vector.
+        let largest_overlap = self.largest_overlap;
         for k in from..from + 16 {
             let (radii, masses) =
                 ([self.radius[0].0[k], self.radius[1].0[k]], [self.mass[0].0[k], self.mass[1].0[k]]);
@@ -541,7 +543,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             }
             self.arm[0].0[k] = arms[0];
             self.arm[1].0[k] = arms[1];
-            let depth = overlap - self.largest_overlap * radii[0].min(radii[1]);
+            let depth = overlap - largest_overlap * radii[0].min(radii[1]);
             self.depth.0[k] = or_nothing(depth).max(self.depth.0[k]);
             if LEDGER {
                 let energy = response.energy;
