@@ -12,7 +12,8 @@ use crate::solid::{Solid, State, Support};
 
 /// Steps between two looks at the energy.
 const WATCH_INTERVAL: u64 = 64;
-/// Steps between two looks for inverted elements where the forces come from an assembled stiffness, which does not see them.
+/// Steps between two looks for inverted elements where the forces come from an assembled stiffness, which does not see them; a look
+/// costs about two steps.
 const INVERSION_INTERVAL: u64 = 256;
 
 /// Work and dissipation since the first step [J], by the trapezoidal rule.

@@ -53,7 +53,7 @@ impl Elements {
             ElementOrder::Linear if is_linear_law && !is_averaged => {
                 let undeformed = vec![Vec3::zeros(); mesh.nodes.len()];
                 let states = ElementStates::new(mesh, laws, &undeformed, false);
-                Self::Assembled(StiffnessRows::new(&assemble(&states, &[])), BlockSet::new(mesh, laws, false))
+                Self::Assembled(StiffnessRows::new(assemble(&states, &[])), BlockSet::new(mesh, laws, false))
             }
             ElementOrder::Linear => Self::Linear(BlockSet::new(mesh, laws, is_averaged)),
         }

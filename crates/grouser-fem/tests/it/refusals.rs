@@ -48,3 +48,27 @@ fn an_element_that_turns_inside_out_in_flight_is_named() {
     let failure = (0..1000).find_map(|_| solid.step(dt).err()).unwrap().to_string();
     assert!(failure.contains("is inverted") && failure.contains("step"), "{failure}");
 }
+
+#[test]
+fn an_assembled_stiffness_names_an_inverted_element_within_256_steps_and_in_statics() {
+    let build = || {
+        let mut cube = solid(cube(), Formulation::BodyAttached, VolumetricTreatment::PerElement, 0.3);
+        cube.fix("x_min").unwrap();
+        cube
+    };
+    let mut pushed = build();
+    let ends = pushed.mesh().nodes_of("x_max").unwrap();
+    let dt = 0.9 * pushed.stable_time_step().dt;
+    // The cube of 1 m is shorter than nothing after half of the steps.
+    for &node in &ends {
+        pushed.prescribe(node, 0, 0.0, -1.5 / (128.0 * dt));
+    }
+    let failure = (0..257).find_map(|_| pushed.step(dt).err()).unwrap().to_string();
+    assert!(failure.contains("is inverted") && failure.contains("step 256"), "{failure}");
+    let mut pressed = build();
+    for &node in &ends {
+        pressed.prescribe(node, 0, -1.5, 0.0);
+    }
+    let failure = pressed.solve_statics(&StaticOptions::default()).unwrap_err().to_string();
+    assert!(failure.contains("is inverted"), "{failure}");
+}
