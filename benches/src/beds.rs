@@ -1,6 +1,8 @@
 //! Beds at rest of soft sand on a floor, periodic to the sides: settled once, then kept in the build folder.
 
-use grouser_contact::{F64, HertzMindlin, Interaction, Material, PairTable, Sphere, Tail};
+use grouser_contact::{
+    ContactLaw, F64, HertzMindlin, Interaction, Material, PairTable, Precision, Real, Sphere, Tail,
+};
 use grouser_dem::*;
 use grouser_geometry::Vec3;
 use std::error::Error;
@@ -149,9 +151,17 @@ impl BedOf {
         Domain { lower: Vec3::zeros(), upper: Vec3::new(x, y, top), is_periodic: [true, true, false] }
     }
 
-    fn of(&self, spheres: Vec<Sphere>) -> Result<Bed<Law>, Box<dyn Error>> {
+    /// The bed of these grains, in any precision.
+    ///
+    /// # Errors
+    /// When grains or box are unusable.
+    pub fn of<P: Precision>(&self, spheres: Vec<Sphere<P>>) -> Result<Bed<Law, P>, Box<dyn Error>>
+    where
+        Law: ContactLaw<P::Real>,
+    {
+        let tops = spheres.iter().map(|s| s.position.z.to_f64() + s.radius.to_f64());
         let settings = BedSettings {
-            domain: self.domain(spheres.iter().map(|s| s.position.z + s.radius).fold(0.5, f64::max)),
+            domain: self.domain(tops.fold(0.5, f64::max)),
             planes: vec![Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0 }],
             gravity: Vec3::new(0.0, 0.0, -9.81),
             rotation: Rotation::Free,

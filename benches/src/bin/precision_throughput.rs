@@ -4,7 +4,7 @@
 //! 60 mm in each precision. Packings diverge from the least difference, so the plate starts at several places, and a bed of which
 //! one half is shifted by 1 µm shows how far that alone goes. The differences of the mean forces are given.
 
-use benches::beds::{BedOf, SAND};
+use benches::beds::{BedOf, Law, SAND};
 use benches::figures::Figures;
 use clap::Parser;
 use grouser_contact::*;
@@ -29,7 +29,6 @@ struct Arguments {
     json: Option<PathBuf>,
 }
 
-type Law = HertzMindlin<true, false>;
 /// Place and radius of a grain [m].
 type Row = (Vec3, f64);
 
@@ -40,32 +39,20 @@ const SHALLOW: [f64; 2] = [0.0005, 0.002];
 const DEEP: [f64; 2] = [0.005, 0.012];
 
 /// Mean forces on the plate [N] over the shallow and the deep part of its way.
-fn press<P: Precision>(rows: &[Row], width: f64, at: [f64; 2], dt: f64) -> Result<[f64; 2], Box<dyn Error>>
+fn press<P: Precision>(bed_of: &BedOf, rows: &[Row], at: [f64; 2]) -> Result<[f64; 2], Box<dyn Error>>
 where
     Law: ContactLaw<P::Real>,
     <Law as ContactLaw<P::Real>>::Memory: Memory<P::Real>,
 {
+    let dt = bed_of.time_step();
     let top = rows.iter().map(|(place, radius)| place.z + radius).fold(0.0, f64::max);
-    let settings = BedSettings {
-        domain: Domain {
-            lower: Vec3::zeros(),
-            upper: Vec3::new(width, width, top + 0.1),
-            is_periodic: [true, true, false],
-        },
-        planes: vec![Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0 }],
-        gravity: Vec3::new(0.0, 0.0, -9.81),
-        rotation: Rotation::Free,
-        has_ledger: false,
-    };
-    let between = Interaction { restitution: 0.5, friction: 0.5 };
-    let table = PairTable::new(&[SAND], Tail::Keep, |_, _| between)?;
     let spheres = rows.iter().map(|&(place, radius)| sphere::<P>(place, radius, SAND.density_kg_m3, 0));
-    let mut bed: Bed<Law, P> = Bed::new(spheres.collect(), settings, table.clone(), HertzMindlin)?;
+    let mut bed = bed_of.of::<P>(spheres.collect())?;
+    let (law, table): (Law, _) = (HertzMindlin, bed.pair_table().clone());
     bed.run(500, dt, |_| Ok::<(), Failure>(()))?;
     let mut motion = RigidMotion::at_rest(Vec3::new(at[0], at[1], top));
     motion.velocity = Vec3::z() * -SPEED;
     let mut plate = SurfaceContacts::new(disc_plate(RADIUS, 0.01, 64)?, 0);
-    let law: Law = HertzMindlin;
     let mut sums = [[0.0; 2]; 2];
     let n_steps = ((0.004 + DEEP[1]) / (SPEED * dt)) as u64;
     let mut touched = f64::NAN;
@@ -101,7 +88,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build_global()?;
     let radii = RadiusDistribution::Uniform { from_m: 0.0038, to_m: 0.0042 };
     let bed_of = BedOf { radii, n_grains: 20_000, width: [0.2, 0.2] };
-    let (bed, dt, width) = (bed_of.tiled_at_rest([1, 1])?, bed_of.time_step(), bed_of.width[0]);
+    let (bed, width) = (bed_of.tiled_at_rest([1, 1])?, bed_of.width[0]);
     let rows: Vec<Row> = bed
         .grains()
         .spheres
@@ -115,11 +102,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut differences = [const { [const { Vec::new() }; 2] }; 3];
     for place in 0..arguments.places {
         let at = [0.7549, 0.5698].map(|step| width * (0.25 + 0.5 * (step * place as f64).fract()));
-        let exact = press::<F64>(&rows, width, at, dt)?;
+        let exact = press::<F64>(&bed_of, &rows, at)?;
         let others = [
-            press::<Mixed>(&rows, width, at, dt)?,
-            press::<F32>(&rows, width, at, dt)?,
-            press::<F64>(&shifted, width, at, dt)?,
+            press::<Mixed>(&bed_of, &rows, at)?,
+            press::<F32>(&bed_of, &rows, at)?,
+            press::<F64>(&bed_of, &shifted, at)?,
         ];
         println!("  at {at:.3?}: {exact:.3?} N, others {others:.3?} N");
         for (rows, other) in differences.iter_mut().zip(others) {
