@@ -64,16 +64,18 @@ pub(crate) struct Period<C> {
 }
 
 impl<C: Real> Period<C> {
-    /// The shortest of the images of `difference`, and the number of that image.
+    /// The shortest of the images of `difference`, and the number of that image: 13 + turns along x + 3 along y + 9 along z.
+    #[inline(always)]
     pub fn nearest(&self, difference: Vector<C>) -> (Vector<C>, u32) {
-        let (mut difference, mut image, mut digit) = (difference.to_array(), 0, 1);
+        let (mut difference, mut image, mut digit) = (difference.to_array(), C::from_f64(13.0), C::ONE);
         for axis in 0..3 {
             let turns = (difference[axis] * self.inverse[axis]).round_ties_even();
             difference[axis] -= self.length[axis] * turns;
-            image += digit * (turns.to_f64() as i32 + 1) as u32;
-            digit *= 3;
+            image += digit * turns;
+            digit = digit * C::from_f64(3.0);
         }
-        (difference.into(), image)
+        // At 1.5 × 2⁵² neighbouring numbers are one apart, so that the last bits are the number; a cast would look for overflow.
+        (difference.into(), (image.to_f64() + 6_755_399_441_055_744.0).to_bits() as u32)
     }
 
     /// What to subtract from a difference to reach each image [m]; image numbers are those of [`Period::nearest`]. A power

@@ -38,7 +38,9 @@
 mod active_zone;
 mod bed;
 mod bed_zone;
+mod block;
 mod border;
+mod candidates;
 mod cell_grid;
 mod domain;
 mod energy;

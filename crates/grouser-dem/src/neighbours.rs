@@ -1,6 +1,7 @@
 //! Verlet lists over the sorted bed, with a skin that tunes itself.
 
 use crate::active_zone::Zone;
+use crate::candidates::Candidates;
 use crate::cell_grid::CellGrid;
 use crate::large_grains::{LargeGrains, lists_of_large_grains};
 use crate::plane::{Plane, PlaneList};
@@ -148,9 +149,12 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
         let period = domain.period();
         let [skin, largest] = [self.skin, self.levels.largest(0)].map(P::Coordinate::from_f64);
         let spheres = &grains.spheres[..n_listed];
+        let candidates = Candidates::new(spheres, largest);
         let mut slabs: Vec<Slab<P::Real, M>> = layers_of_slabs(&grid, GRAINS_PER_SLAB, 1)
             .into_par_iter()
-            .map(|layers| Slab::build(&grid, layers, spheres, &period, skin, largest, &is_asleep))
+            .map(|layers| {
+                Slab::build(&grid, layers, spheres, &candidates, &period, skin, largest, &is_asleep)
+            })
             .collect();
         let mut large = lists_of_large_grains(&self.levels, &grid, spheres, domain, self.skin, &is_asleep);
         // Memory comes from the old lists, or from those who slept.

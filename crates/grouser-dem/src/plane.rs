@@ -1,7 +1,8 @@
 //! Analytic planes: floors and side walls.
 
+use crate::block::FrameOf;
 use crate::cell_grid::to_f64;
-use crate::force_pass::{FrameOf, PassInput};
+use crate::force_pass::PassInput;
 use crate::slab::SlabSums;
 use grouser_contact::{
     Body, Contact, ContactLaw, ContactLedger, Frame, Memory, Precision, Real, RotationLaw, Sphere, Vector,

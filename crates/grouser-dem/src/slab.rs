@@ -3,6 +3,7 @@
 //! A pair that starts in slab s ends in s or in s + 1, so a grain of slab s receives forces from the passes over s − 1
 //! and over s alone. The order in which slabs are worked on is the matter of [`crate::sweep`].
 
+use crate::candidates::{Candidates, Near, Seeker};
 use crate::cell_grid::CellGrid;
 use crate::domain::Period;
 use crate::plane::PlaneList;
@@ -77,6 +78,7 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
         grid: &CellGrid,
         layers: std::ops::Range<usize>,
         spheres: &[Sphere<P>],
+        candidates: &Candidates<P::Coordinate>,
         period: &Period<P::Coordinate>,
         skin: P::Coordinate,
         largest: P::Coordinate,
@@ -86,7 +88,7 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
         let layer = n_rows * n_columns;
         let first_grain = grid.first[layers.start * layer];
         let mut rows = vec![0];
-        let mut pairs = Vec::new();
+        let (mut pairs, mut near) = (Vec::new(), Near::none());
         let mut ranges: Vec<std::ops::Range<u32>> = Vec::new();
         for cell in layers.start * layer..layers.end * layer {
             ranges.clear();
@@ -98,22 +100,23 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
                     rows.push(pairs.len() as u32);
                     continue;
                 }
-                let sleeps = is_asleep.get(i as usize) == Some(&true);
-                let mut seek = |range: std::ops::Range<u32>| {
-                    for j in range {
-                        if sleeps && is_asleep[j as usize] {
-                            continue;
-                        }
-                        let other = &spheres[j as usize];
-                        let reach = sphere.radius + other.radius + skin;
-                        let (difference, image) = period.nearest(sphere.position - other.position);
-                        if difference.norm_squared() < reach * reach && other.radius <= largest {
-                            pairs.push(Pair::new(i, j, image));
+                let first = pairs.len();
+                let seeker = Seeker { grain: i, position: sphere.position, reach: sphere.radius + skin };
+                let own = i + 1..grid.first[cell + 1];
+                for range in std::iter::once(own).chain(ranges.iter().cloned()) {
+                    candidates.look(&seeker, range, period, &mut near, &mut pairs);
+                }
+                near.hand_over(&mut pairs);
+                if is_asleep.get(i as usize) == Some(&true) {
+                    let mut from = first;
+                    while from < pairs.len() {
+                        if is_asleep[pairs[from].grains()[1] as usize] {
+                            pairs.remove(from);
+                        } else {
+                            from += 1
                         }
                     }
-                };
-                seek(i + 1..grid.first[cell + 1]);
-                ranges.iter().cloned().for_each(&mut seek);
+                }
                 rows.push(pairs.len() as u32);
             }
         }

@@ -1,6 +1,7 @@
 //! The motion of free spheres, one record's group of four numbers at a time.
 
 use super::Quads;
+use super::octet::Octet;
 use super::quad::{NarrowsTo, Quad};
 use crate::integrate::{Motion, Watch};
 use grouser_contact::{Load, Real, Sphere, Vector};
@@ -18,48 +19,48 @@ pub(crate) unsafe fn advance<Q: Quads>(
     watch: &mut Watch<Q::Real>,
 ) {
     assert!(spheres.len() == loads.len() && spheres.len() == accelerations.len());
-    // Here and not behind a pointer, where every grain would wait for the last one's to be stored.
-    let mut seen = *watch;
     // SAFETY: the three slices have one length; records are groups of four numbers, accelerations six in a row.
     unsafe {
         let scalar = Q::Real::from_f64;
         let (dt, zero) = (motion.time_step, Q::Real::ZERO);
-        let half_step = Q::Narrow::splat(scalar(0.5) * dt);
-        let step = Q::Narrow::splat(dt);
-        let nothing = Q::Narrow::splat(zero);
-        let gravity = [motion.gravity.x, motion.gravity.y, motion.gravity.z, zero];
-        let gravity = Q::Narrow::load(gravity.as_ptr());
+        let half = scalar(0.5) * dt;
+        let (half_steps, steps) = (Q::Both::of_halves(half, half), Q::Both::of_halves(dt, dt));
+        let (half_step, step) = (half_steps.translation(), steps.translation());
+        let nothing = Q::Both::of_halves(zero, zero);
+        // −0 leaves every number as it is, zeros with their sign.
+        let Vector { x, y, z } = motion.gravity;
+        let gravity = [x, y, z, zero, -zero, -zero, -zero, -zero];
+        let gravity = Q::Both::load(gravity.as_ptr());
+        let (mut fastest, mut checksum) = (Q::Both::no_sums(), Q::Both::no_sums());
         for index in 0..spheres.len() {
             let sphere = spheres.as_mut_ptr().add(index);
             let position: *mut Q::Coordinate = (&raw mut (*sphere).position).cast();
-            let velocity: *mut Q::Real = (&raw mut (*sphere).velocity).cast();
-            let spin: *mut Q::Real = (&raw mut (*sphere).spin).cast();
+            let motion: *mut Q::Real = (&raw mut (*sphere).velocity).cast();
             let load: *mut Q::Real = loads.as_mut_ptr().add(index).cast();
             let acceleration: *mut Q::Real = accelerations.as_mut_ptr().add(index).cast();
 
             let (mass, inertia_per_mass) = ((*sphere).mass, (*sphere).inertia_per_mass());
             let inverse = Q::Real::ONE / (mass * inertia_per_mass);
-            let [linear, angular] = Q::Narrow::load_six(acceleration);
-            let force = Q::Narrow::load(load).times(Q::Narrow::splat(inverse * inertia_per_mass));
-            let after = force.plus(gravity);
-            let turning = Q::Narrow::load(load.add(4)).times(Q::Narrow::splat(inverse));
-            Q::Narrow::store_six([after, turning], acceleration);
+            let before = Q::Both::load_six(acceleration);
+            let mobility = Q::Both::of_halves(inverse * inertia_per_mass, inverse);
+            let after = Q::Both::load(load).times(mobility).plus(gravity);
+            after.store_six(acceleration);
             nothing.store(load);
-            nothing.store(load.add(4));
 
-            let (v, w) = (Q::Narrow::load(velocity), Q::Narrow::load(spin));
-            let now = v.plus(after.minus(linear).times(half_step));
-            let turned = w.plus(turning.minus(angular).times(half_step));
-            let travel = now.plus(after.times(half_step)).times(step);
+            let old = Q::Both::load(motion);
+            let now = old.plus(after.minus(before).times(half_steps));
+            let travel = now.translation().plus(after.translation().times(half_step)).times(step);
             let place = Q::Wide::load(position);
             place.plus(Q::Wide::widened(travel)).with_last_of(place).store(position);
-            let next = now.plus(after.times(step)).with_last_of(v);
-            let spinning = turned.plus(turning.times(step)).with_last_of(w);
-            next.store(velocity);
-            spinning.store(spin);
-            let [speed_squared, spin_squared] = Q::Narrow::squares(next, spinning);
-            seen.see(speed_squared, spin_squared);
+            let next = now.plus(after.times(steps));
+            next.with_lasts_of(old).store(motion);
+            let squares = next.squares();
+            fastest = Q::Both::larger(squares, fastest);
+            checksum = Q::Both::plus_nothing_of(checksum, squares);
         }
+        let [fastest, _] = Q::Both::scalars(fastest);
+        let [checksum, of_spins] = Q::Both::scalars(checksum);
+        watch.see(fastest, zero);
+        watch.see(checksum, of_spins);
     }
-    *watch = seen;
 }

@@ -6,35 +6,43 @@
 //! closure stands between a loop and its instructions: either would leave a call for every four contacts.
 
 mod advance;
+mod memory;
+mod octet;
 mod quad;
 
 pub(crate) use advance::advance;
+pub(crate) use memory::{recall, remember};
 
 use crate::force_pass::Waiting;
 use crate::slab::Pair;
 use grouser_contact::{BLOCK, F32, F64, Lanes, Load, Mixed, Precision, Sphere};
+use octet::{Octet, Two};
 use quad::{NarrowsTo, Quad};
-use std::arch::x86_64::{__m128, __m256d};
+use std::arch::x86_64::{__m128, __m256, __m256d};
 
 /// Precisions and the registers that hold four of their scalars.
 pub(crate) trait Quads: Precision {
     type Wide: Quad<Scalar = Self::Coordinate> + NarrowsTo<Self::Narrow>;
     type Narrow: Quad<Scalar = Self::Real>;
+    type Both: Octet<Scalar = Self::Real, Half = Self::Narrow>;
 }
 
 impl Quads for F64 {
     type Wide = __m256d;
     type Narrow = __m256d;
+    type Both = Two;
 }
 
 impl Quads for Mixed {
     type Wide = __m256d;
     type Narrow = __m128;
+    type Both = __m256;
 }
 
 impl Quads for F32 {
     type Wide = __m128;
     type Narrow = __m128;
+    type Both = __m256;
 }
 
 /// Sorted spheres and the shift of each periodic image (fourth number zero).
@@ -198,9 +206,9 @@ pub(crate) unsafe fn scatter<Q: Quads>(
 ) {
     // SAFETY: by the caller's promise; loads are two groups of four numbers.
     unsafe {
-        let zero = Q::Real::default();
         let one = <Q::Real as grouser_contact::Real>::ONE;
-        let padding = Q::Narrow::splat(zero);
+        let padding = Q::Narrow::splat(Q::Real::default());
+        let (near_side, far_side) = (Q::Both::of_halves(one, one), Q::Both::of_halves(-one, one));
         let mut k = 0;
         while k < at.len() {
             let [x, y, z] = forces;
@@ -212,16 +220,19 @@ pub(crate) unsafe fn scatter<Q: Quads>(
             ]);
             let [x, y, z] = couples;
             let couple = Q::Narrow::transposed([
-                Q::Narrow::load(x.add(k)),
-                Q::Narrow::load(y.add(k)),
-                Q::Narrow::load(z.add(k)),
+                Q::Narrow::load(x.add(k)).negated(),
+                Q::Narrow::load(y.add(k)).negated(),
+                Q::Narrow::load(z.add(k)).negated(),
                 padding,
             ]);
             for n in 0..(at.len() - k).min(4) {
                 let [near, far] = pairs.get_unchecked(at[k + n] as usize).grains();
-                let (near, far) = (loads.add(near as usize).cast(), loads.add(far as usize).cast());
-                Q::Narrow::add_eight(near, force[n], one, couple[n], -*arms[0].add(k + n));
-                Q::Narrow::add_eight(far, force[n], -one, couple[n], -*arms[1].add(k + n));
+                let both = Q::Both::joined(force[n], couple[n]);
+                for (grain, side, arm) in [(near, near_side, arms[0]), (far, far_side, arms[1])] {
+                    let load = loads.add(grain as usize).cast();
+                    let share = both.times(side.with_rotation_of(arm.add(k + n)));
+                    Q::Both::load(load).plus(share).store(load);
+                }
             }
             k += 4;
         }

@@ -27,21 +27,12 @@ pub(crate) trait Quad: Copy {
     unsafe fn transposed(rows: [Self; 4]) -> [Self; 4];
     /// Fourth numbers of four groups.
     unsafe fn fourths(groups: [*const Self::Scalar; 4]) -> Self;
+    /// Columns of the three numbers that each of four pointers points to.
+    unsafe fn columns_of_three(rows: [*const Self::Scalar; 4]) -> [Self; 3];
+    /// Stores the n-th of each column as the three numbers that pointer n points to.
+    unsafe fn store_as_rows(columns: [Self; 3], rows: [*mut Self::Scalar; 4]);
     /// Columns of the eight numbers that follow each of four pointers.
     unsafe fn columns_of_eight(rows: [*const Self::Scalar; 4]) -> [[Self; 4]; 2];
-    /// Adds row n of `forces` and of `couples` times `factor` to the eight numbers at `to`, forces with the sign of `sign`.
-    unsafe fn add_eight(
-        to: *mut Self::Scalar,
-        force: Self,
-        sign: Self::Scalar,
-        couple: Self,
-        factor: Self::Scalar,
-    );
-    /// (x² + y²) + z² of the first three of both.
-    unsafe fn squares(first: Self, second: Self) -> [Self::Scalar; 2];
-    /// Six numbers in a row: the first three, and the last three.
-    unsafe fn load_six(from: *const Self::Scalar) -> [Self; 2];
-    unsafe fn store_six(parts: [Self; 2], to: *mut Self::Scalar);
 }
 
 /// Narrowing of four numbers; the identity where both are alike.
@@ -165,6 +156,33 @@ impl Quad for __m256d {
     }
     #[target_feature(enable = "avx2")]
     #[inline]
+    unsafe fn columns_of_three([a, b, c, d]: [*const f64; 4]) -> [Self; 3] {
+        unsafe {
+            let ac = _mm256_set_m128d(_mm_loadu_pd(c), _mm_loadu_pd(a));
+            let bd = _mm256_set_m128d(_mm_loadu_pd(d), _mm_loadu_pd(b));
+            let low = _mm_loadh_pd(_mm_load_sd(a.add(2)), b.add(2));
+            let high = _mm_loadh_pd(_mm_load_sd(c.add(2)), d.add(2));
+            [_mm256_unpacklo_pd(ac, bd), _mm256_unpackhi_pd(ac, bd), _mm256_set_m128d(high, low)]
+        }
+    }
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    unsafe fn store_as_rows([x, y, z]: [Self; 3], [a, b, c, d]: [*mut f64; 4]) {
+        unsafe {
+            let (ac, bd) = (_mm256_unpacklo_pd(x, y), _mm256_unpackhi_pd(x, y));
+            let (z_ab, z_cd) = (_mm256_castpd256_pd128(z), _mm256_extractf128_pd::<1>(z));
+            _mm_storeu_pd(a, _mm256_castpd256_pd128(ac));
+            _mm_store_sd(a.add(2), z_ab);
+            _mm_storeu_pd(b, _mm256_castpd256_pd128(bd));
+            _mm_storeh_pd(b.add(2), z_ab);
+            _mm_storeu_pd(c, _mm256_extractf128_pd::<1>(ac));
+            _mm_store_sd(c.add(2), z_cd);
+            _mm_storeu_pd(d, _mm256_extractf128_pd::<1>(bd));
+            _mm_storeh_pd(d.add(2), z_cd);
+        }
+    }
+    #[target_feature(enable = "avx2")]
+    #[inline]
     unsafe fn columns_of_eight([a, b, c, d]: [*const f64; 4]) -> [[Self; 4]; 2] {
         unsafe {
             [
@@ -176,40 +194,6 @@ impl Quad for __m256d {
                     Self::load(d.add(4)),
                 ]),
             ]
-        }
-    }
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    unsafe fn add_eight(to: *mut f64, force: Self, sign: f64, couple: Self, factor: f64) {
-        unsafe {
-            let force = _mm256_xor_pd(force, _mm256_set1_pd(if sign < 0.0 { -0.0 } else { 0.0 }));
-            _mm256_add_pd(Self::load(to), force).store(to);
-            let couple = _mm256_mul_pd(couple, _mm256_set1_pd(factor));
-            _mm256_add_pd(Self::load(to.add(4)), couple).store(to.add(4));
-        }
-    }
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    unsafe fn squares(first: Self, second: Self) -> [f64; 2] {
-        let keep = _mm256_castsi256_pd(_mm256_set_epi64x(0, -1, -1, -1));
-        let (first, second) = (_mm256_and_pd(first, keep), _mm256_and_pd(second, keep));
-        let sums = _mm256_hadd_pd(_mm256_mul_pd(first, first), _mm256_mul_pd(second, second));
-        let total = _mm_add_pd(_mm256_castpd256_pd128(sums), _mm256_extractf128_pd::<1>(sums));
-        [_mm_cvtsd_f64(total), _mm_cvtsd_f64(_mm_unpackhi_pd(total, total))]
-    }
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    unsafe fn load_six(from: *const f64) -> [Self; 2] {
-        unsafe { [Self::load(from), _mm256_permute4x64_pd::<0b00_11_10_01>(Self::load(from.add(2)))] }
-    }
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    unsafe fn store_six([first, second]: [Self; 2], to: *mut f64) {
-        unsafe {
-            let third = _mm256_permute4x64_pd::<0b10_10_10_10>(first);
-            let rest = _mm256_permute4x64_pd::<0b10_01_00_00>(second);
-            first.store(to);
-            _mm256_blend_pd::<0b0001>(rest, third).store(to.add(2));
         }
     }
 }
@@ -287,6 +271,34 @@ impl Quad for __m128 {
     }
     #[target_feature(enable = "avx2")]
     #[inline]
+    unsafe fn columns_of_three([a, b, c, d]: [*const f32; 4]) -> [Self; 3] {
+        unsafe {
+            let two = |low: *const f32, high: *const f32| {
+                _mm_castpd_ps(_mm_loadh_pd(_mm_load_sd(low.cast()), high.cast()))
+            };
+            let (ab, cd) = (two(a, b), two(c, d));
+            let z = _mm_setr_ps(*a.add(2), *b.add(2), *c.add(2), *d.add(2));
+            [_mm_shuffle_ps::<0b10_00_10_00>(ab, cd), _mm_shuffle_ps::<0b11_01_11_01>(ab, cd), z]
+        }
+    }
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    unsafe fn store_as_rows([x, y, z]: [Self; 3], [a, b, c, d]: [*mut f32; 4]) {
+        unsafe {
+            let ab = _mm_castps_pd(_mm_unpacklo_ps(x, y));
+            let cd = _mm_castps_pd(_mm_unpackhi_ps(x, y));
+            _mm_store_sd(a.cast(), ab);
+            _mm_store_ss(a.add(2), z);
+            _mm_storeh_pd(b.cast(), ab);
+            _mm_store_ss(b.add(2), _mm_movehdup_ps(z));
+            _mm_store_sd(c.cast(), cd);
+            _mm_store_ss(c.add(2), _mm_movehl_ps(z, z));
+            _mm_storeh_pd(d.cast(), cd);
+            _mm_store_ss(d.add(2), _mm_shuffle_ps::<0b11_11_11_11>(z, z));
+        }
+    }
+    #[target_feature(enable = "avx2")]
+    #[inline]
     unsafe fn columns_of_eight([a, b, c, d]: [*const f32; 4]) -> [[Self; 4]; 2] {
         unsafe {
             let (a, b) = (_mm256_loadu_ps(a), _mm256_loadu_ps(b));
@@ -311,39 +323,6 @@ impl Quad for __m128 {
                     _mm256_extractf128_ps::<1>(last),
                 ],
             ]
-        }
-    }
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    unsafe fn add_eight(to: *mut f32, force: Self, sign: f32, couple: Self, factor: f32) {
-        unsafe {
-            let both = _mm256_set_m128(couple, force);
-            let factors = _mm256_set_m128(_mm_set1_ps(factor), _mm_set1_ps(sign));
-            _mm256_storeu_ps(to, _mm256_add_ps(_mm256_loadu_ps(to), _mm256_mul_ps(both, factors)));
-        }
-    }
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    unsafe fn squares(first: Self, second: Self) -> [f32; 2] {
-        let keep = _mm_castsi128_ps(_mm_set_epi32(0, -1, -1, -1));
-        let (first, second) = (_mm_and_ps(first, keep), _mm_and_ps(second, keep));
-        let sums = _mm_hadd_ps(_mm_mul_ps(first, first), _mm_mul_ps(second, second));
-        let total = _mm_hadd_ps(sums, sums);
-        [_mm_cvtss_f32(total), _mm_cvtss_f32(_mm_movehdup_ps(total))]
-    }
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    unsafe fn load_six(from: *const f32) -> [Self; 2] {
-        unsafe { [Self::load(from), _mm_permute_ps::<0b00_11_10_01>(Self::load(from.add(2)))] }
-    }
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    unsafe fn store_six([first, second]: [Self; 2], to: *mut f32) {
-        unsafe {
-            let third = _mm_permute_ps::<0b10_10_10_10>(first);
-            let rest = _mm_permute_ps::<0b10_01_00_00>(second);
-            first.store(to);
-            _mm_blend_ps::<0b0001>(rest, third).store(to.add(2));
         }
     }
 }
