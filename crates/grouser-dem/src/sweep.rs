@@ -8,15 +8,18 @@
 //!
 //! Each grain sums its forces in the order "even slab, odd slab" whatever the number of threads, and its record is still in
 //! the cache when it is moved: one sweep reads and writes each grain once. For several threads the slabs are parted into
-//! runs that begin with an even slab; the last odd slab of a run, which writes into the next run, waits for a second turn.
+//! runs that begin with an even slab. The last odd slab of a run, which writes into the next run, waits for the even ones on
+//! both sides, which are passed over first; whoever has finished a run takes those that need not wait any more.
 
 use crate::force_pass::{PassInput, slab_forces};
 use crate::integrate::{Motion, Pace};
 use crate::plane::Plane;
 use crate::slab::Slab;
-use grouser_contact::{ContactLaw, Memory, Precision};
+use grouser_contact::{ContactLaw, Memory, Precision, Real};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Grains that another thread is worth. Measured: a second thread costs 0–3 % of a bed of 250 to 2,000 grains and gains 5–9 % at
 /// 4,000. The tests of thread counts have beds of at least three times as many, so that threads do share them.
@@ -52,56 +55,108 @@ pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
     let n_slabs = slabs.len();
     let n_grains: usize = ranges.iter().map(ExactSizeIterator::len).sum();
     let n_threads = threads_of(n_grains);
-    let run_length = run_length(n_slabs, n_threads);
     let is_last = |slab: usize| slab + 1 == n_slabs && !is_ring;
-
-    let first_turn = |run: usize, slabs: &mut [Slab<P::Real, L::Memory>]| {
-        let mut pace = Pace::STILL;
-        let start = run * run_length;
-        for even in (0..slabs.len()).step_by(2) {
-            pass(&mut slabs[even], planes, input);
-            if even > 0 {
-                pass(&mut slabs[even - 1], planes, input);
-                pace = pace.and(moves(start + even - 1)).and(moves(start + even));
-            } else if start == 0 && !is_ring {
-                pace = pace.and(moves(0));
-            }
-        }
-        let end = slabs.len() - 1;
-        if end % 2 == 1 && is_last(start + end) {
-            pass(&mut slabs[end], planes, input);
-            pace = pace.and(moves(start + end));
-        }
-        pace
-    };
-    let second_turn = |run: usize, slabs: &mut [Slab<P::Real, L::Memory>]| {
-        let end = slabs.len() - 1;
-        let slab = run * run_length + end;
-        if end.is_multiple_of(2) || is_last(slab) {
-            return Pace::STILL;
-        }
-        pass(&mut slabs[end], planes, input);
-        moves(slab).and(moves(slab + 1))
-    };
     if n_slabs == 0 {
         return Pace::STILL;
     }
-    if n_threads == 1 {
-        // Everything is one run, and nobody has to be woken for it.
-        return first_turn(0, slabs).and(second_turn(0, slabs));
+
+    // The last odd slab of a run waits for its own run's last even slab and the next run's first one.
+    let mut waiting = Vec::new();
+    let mut runs = Vec::new();
+    let starts = starts_of_runs(slabs, n_threads);
+    let mut rest = slabs;
+    for (run, &start) in starts.iter().enumerate() {
+        let end = starts.get(run + 1).copied().unwrap_or(n_slabs);
+        let slabs = rest.split_off_mut(..end - start).expect("runs part the slabs");
+        let waits = slabs.len().is_multiple_of(2) && !is_last(end - 1);
+        let (own, last) = slabs.split_at_mut(slabs.len() - usize::from(waits));
+        let slab = Mutex::new(last.first_mut());
+        waiting.push(Waiting { number: end - 1, n_missing: AtomicU32::new(2), slab });
+        runs.push(Run { number: run, start, slabs: own });
     }
-    let runs = slabs.par_chunks_mut(run_length).enumerate();
-    let pace = runs.map(|(run, slabs)| first_turn(run, slabs)).reduce(|| Pace::STILL, Pace::and);
-    let runs = slabs.par_chunks_mut(run_length).enumerate();
-    pace.and(runs.map(|(run, slabs)| second_turn(run, slabs)).reduce(|| Pace::STILL, Pace::and))
+    let n_runs = runs.len();
+    let work = |Run { number: run, start, slabs: own }: Run<'_, Slab<P::Real, L::Memory>>| {
+        let end = own.len() - 1;
+        let last_even = end & !1;
+        pass(&mut own[0], planes, input);
+        waiting[(run + n_runs - 1) % n_runs].has_one_less_to_wait_for();
+        if last_even > 0 {
+            pass(&mut own[last_even], planes, input);
+        }
+        waiting[run].has_one_less_to_wait_for();
+        let mut pace = if start == 0 && !is_ring { moves(0) } else { Pace::STILL };
+        for even in (2..=last_even).step_by(2) {
+            if even < last_even {
+                pass(&mut own[even], planes, input);
+            }
+            pass(&mut own[even - 1], planes, input);
+            pace = pace.and(moves(start + even - 1)).and(moves(start + even));
+        }
+        if end % 2 == 1 {
+            pass(&mut own[end], planes, input);
+            pace = pace.and(moves(start + end));
+        }
+        // Whoever is done takes slabs that need not wait any more; the last one finds all of them so.
+        for waiting in waiting[run..].iter().chain(&waiting[..run]) {
+            if let Some(slab) = waiting.take_if_ready() {
+                pass(slab, planes, input);
+                pace = pace.and(moves(waiting.number)).and(moves(waiting.number + 1));
+            }
+        }
+        pace
+    };
+    if n_threads == 1 {
+        // Nobody has to be woken.
+        return runs.into_iter().map(work).fold(Pace::STILL, Pace::and);
+    }
+    runs.into_par_iter().with_max_len(1).map(work).reduce(|| Pace::STILL, Pace::and)
 }
 
-/// Slabs of a run: all of them for one thread, otherwise an even number that gives each thread several runs.
-fn run_length(n_slabs: usize, n_threads: usize) -> usize {
-    if n_threads == 1 {
-        return n_slabs.next_multiple_of(2);
+/// Slabs that one task passes over.
+struct Run<'a, S> {
+    number: usize,
+    /// Number of the first slab.
+    start: usize,
+    slabs: &'a mut [S],
+}
+
+/// A slab that is passed over once two others have been.
+struct Waiting<'a, S> {
+    number: usize,
+    n_missing: AtomicU32,
+    slab: Mutex<Option<&'a mut S>>,
+}
+
+impl<'a, S> Waiting<'a, S> {
+    /// Another slab that this one waits for has been passed over.
+    fn has_one_less_to_wait_for(&self) {
+        self.n_missing.fetch_sub(1, Ordering::AcqRel);
     }
-    (n_slabs / (4 * n_threads)).next_multiple_of(2).max(2)
+
+    /// The slab, once, when nothing is missing any more.
+    fn take_if_ready(&self) -> Option<&'a mut S> {
+        if self.n_missing.load(Ordering::Acquire) > 0 {
+            return None;
+        }
+        self.slab.lock().expect("nobody panics while holding it").take()
+    }
+}
+
+/// First slabs of the runs, all of them even: one run for each thread, with about the same number of pairs.
+fn starts_of_runs<T: Real, M>(slabs: &[Slab<T, M>], n_threads: usize) -> Vec<usize> {
+    let n_pairs: usize = slabs.iter().map(|slab| slab.pairs.len()).sum();
+    let mut starts = vec![0];
+    let mut before = 0;
+    for (number, slab) in slabs.iter().enumerate() {
+        let share = n_pairs * starts.len() / n_threads;
+        // Half of the pair of slabs that begins here lies below the share at most.
+        let is_nearest = before + slab.pairs.len() > share && starts.len() < n_threads;
+        if number > 0 && number.is_multiple_of(2) && is_nearest {
+            starts.push(number);
+        }
+        before += slab.pairs.len();
+    }
+    starts
 }
 
 fn pass<P: Precision, L: ContactLaw<P::Real>>(
