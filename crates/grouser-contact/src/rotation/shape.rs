@@ -141,6 +141,8 @@ pub struct TiltingSettings {
     /// Impact times π √(m*/k) over which the torque of a normal force builds up [-], in [0, 100]; 0 is P1's law at every instant.
     /// Read by [`crate::Tilting`].
     pub build_up: f64,
+    /// Dashpot on the lift over that of the normal force [-], in [0, 4]; 0 is P1's law. Read by [`crate::Tilting`].
+    pub lift_damping: f64,
 }
 
 /// 0.29°: a grain on an incline topples where the closed form says, within half a degree.
@@ -157,6 +159,7 @@ impl TiltingSettings {
             inertia: GrainInertia::Inscribed,
             smoothing_rad: DEFAULT_SMOOTHING,
             build_up: DEFAULT_BUILD_UP,
+            lift_damping: 1.0,
         }
     }
 
@@ -171,7 +174,11 @@ impl TiltingSettings {
         ParameterError::check("smoothing width", width, (0.0..=0.2).contains(&width), expected)?;
         let expected =
             "in [0, 100] impact times: longer, grains that move with a tool would not feel their corners";
-        ParameterError::check("build-up", self.build_up, (0.0..=100.0).contains(&self.build_up), expected)
+        ParameterError::check("build-up", self.build_up, (0.0..=100.0).contains(&self.build_up), expected)?;
+        let damping = self.lift_damping;
+        let expected =
+            "in [0, 4] times the dashpot of the normal force: more, an explicit step could not follow it";
+        ParameterError::check("damping of the lift", damping, (0.0..=4.0).contains(&damping), expected)
     }
 
     /// How much faster than one of equal mass that does not turn the point of a grain where it is touched gives way, at most [-]:

@@ -31,6 +31,10 @@ pub struct Tilting<const IS_ROUND: bool = false> {
     width: f64,
     /// 1/(π × impact times of the build-up) [-]; [`AT_ONCE`] without.
     following: f64,
+    /// Dashpot on the lift over that of the normal force [-].
+    lift_damping: f64,
+    /// The largest dashpot on the lift times the step over the reduced mass [-].
+    largest_damping: f64,
     inertia_ratios: [f64; 3],
 }
 
@@ -38,13 +42,23 @@ pub struct Tilting<const IS_ROUND: bool = false> {
 const JUMP: f64 = 1e-30;
 /// A rate against which every other vanishes.
 const AT_ONCE: f64 = 1e30;
+/// Share of the turning that the dashpot on one lift may stop within a step [-]: a grain has several contacts.
+const STOPPED_IN_A_STEP: f64 = 0.25;
 /// Half sides of one axis in its two planes may differ by rounding of what a user types [-].
 const SAME_SIDE: f64 = 1e-6;
 
 impl<const IS_ROUND: bool> Default for Tilting<IS_ROUND> {
     /// A ball: no more than a place to read a checkpoint into.
     fn default() -> Self {
-        Self { half: [1.0; 3], circles: [[1.0; 3]; 3], width: 1.0, following: 1.0, inertia_ratios: [0.4; 3] }
+        Self {
+            half: [1.0; 3],
+            circles: [[1.0; 3]; 3],
+            width: 1.0,
+            following: 1.0,
+            lift_damping: 1.0,
+            largest_damping: 0.0,
+            inertia_ratios: [0.4; 3],
+        }
     }
 }
 
@@ -68,6 +82,8 @@ impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
             circles,
             width: settings.smoothing_rad.max(JUMP),
             following: (1.0 / (std::f64::consts::PI * settings.build_up)).min(AT_ONCE),
+            lift_damping: settings.lift_damping,
+            largest_damping: STOPPED_IN_A_STEP / (settings.mobility() - 1.0),
             inertia_ratios: settings.inertia_ratios(),
         })
     }
@@ -123,7 +139,7 @@ impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
     }
 
     /// The part F̄ [N] of the normal force that turns the bodies, `before` a step ago: dF̄/dt = (F_N − F̄)/τ with τ some times
-    /// π √(m*/k), k being the secant stiffness; F̄ ≤ F_N, and F̄ = 0 at first touch.
+    /// π √(m*/k), k being the secant stiffness; F̄ ≤ F_N, and F̄ = 0 at first touch. Beside it the dashpot on the lift [N·s/m].
     #[inline(always)]
     fn built_up<T: Real>(
         &self,
@@ -131,13 +147,16 @@ impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
         pair: &PairProperties<T>,
         normal_force: T,
         before: T,
-    ) -> T {
+    ) -> (T, T) {
         let contact_radius = (contact.effective_radius * contact.overlap).sqrt();
         let stiffness = hertz_stiffness(pair.normal_modulus, contact_radius);
+        let frequency = (stiffness / contact.effective_mass).sqrt();
         // Δt/τ
-        let step =
-            (stiffness / contact.effective_mass).sqrt() * (contact.time_step * T::from_f64(self.following));
-        ((before + normal_force * step) / (T::ONE + step)).min(normal_force)
+        let step = frequency * (contact.time_step * T::from_f64(self.following));
+        let most = T::from_f64(self.largest_damping) / contact.time_step;
+        let rate = (pair.damping * frequency * T::from_f64(self.lift_damping)).min(most);
+        let dashpot = contact.effective_mass * rate;
+        (((before + normal_force * step) / (T::ONE + step)).min(normal_force), dashpot)
     }
 
     /// Levers of both bodies. From the second one the normal is opposite, and so is its lever: both are given for `normal`.
@@ -215,15 +234,15 @@ impl<T: Real, const IS_ROUND: bool> RotationLaw<T> for Tilting<IS_ROUND> {
         bodies: &[Body<T, Quaternion<T>>; 2],
         built_up: T,
     ) -> (Couples<T>, T) {
-        let built_up = self.built_up(contact, pair, response.normal_force, built_up);
-        let pushed = contact.normal * built_up;
-        let force = pushed + response.tangential_force;
+        let (built_up, dashpot) = self.built_up(contact, pair, response.normal_force, built_up);
         let levers = self.levers(contact.normal, bodies);
         let turned = bodies[0].spin.cross(levers[0]) + bodies[1].spin.cross(levers[1]);
-        // What lifting the centres over the corners takes.
-        let lifted = turned.dot(pushed);
+        // Rate at which the centres are lifted over the corners; the dashpot never pulls.
+        let lift = turned.dot(contact.normal);
+        let pushed = (built_up + dashpot * lift).max(T::ZERO);
+        let force = contact.normal * pushed + response.tangential_force;
         let torques = [force.cross(levers[0]), force.cross(levers[1])];
-        (Couples { torques, spent: lifted }, built_up)
+        (Couples { torques, spent: pushed * lift }, built_up)
     }
 
     #[inline(always)]

@@ -233,6 +233,77 @@ fn the_torque_of_a_normal_force_builds_up_over_impact_times_and_falls_at_once() 
     assert!((share(&at_once, 3.0, 0.0) - 3.0).abs() < 1e-12);
 }
 
+/// Power [W] that a cube's lift takes while a grain of 10 g turns with `rate` [rad/s] about y, tilted by `angle`, under 3 N that have
+/// lasted, and the couple about y [N·m].
+fn taken_while_turning(lift_damping: f64, angle: f64, rate: f64, time_step: f64) -> (f64, f64) {
+    let cube = TiltingSettings { lift_damping, ..settings(GrainShape::Cube, 1e-3) };
+    let law = Tilting::<false>::new(&cube).unwrap();
+    let pair = PairProperties { damping: 0.7, ..sand_pair(0.6) };
+    let normal = Vector::new(0.0, 0.0, 1.0);
+    let contact = Contact { normal, ..touching(1e-5, Vector::ZERO, time_step) };
+    let axis = Vector::new(0.0, 1.0, 0.0);
+    let body = Body { arm: 0.01, spin: axis * rate, inverse_moment: 1.0, frame: turn(axis, angle) };
+    let response = Response { normal_force: 3.0, tangential_force: Vector::ZERO, energy: Default::default() };
+    let bodies = [body, Body::at_rest(body.frame)];
+    let (couples, _) = law.couples(&contact, &pair, &response, &bodies, 3.0);
+    (couples.spent, couples.torques[0].y)
+}
+
+#[test]
+fn the_dashpot_on_the_lift_takes_a_share_of_the_rate_in_a_closed_cycle_and_nothing_without_it() {
+    // Over a full turn at a constant rate under a constant force: ∫ c (dL/dt)² dt, so that half the rate takes half the energy.
+    let over_a_turn = |damping: f64, rate: f64| {
+        let n_steps = 7200;
+        let step = TAU / f64::from(n_steps);
+        let spent =
+            |n: i32| taken_while_turning(damping, (f64::from(n) + 0.5) * step, rate, 1e-7).0 * step / rate;
+        (0..n_steps).map(spent).sum::<f64>()
+    };
+    assert!(over_a_turn(0.0, 1.0).abs() < 1e-9);
+    let (slow, fast) = (over_a_turn(1.0, 0.5), over_a_turn(1.0, 1.0));
+    assert!(slow > 0.0 && (fast / slow - 2.0).abs() < 1e-6, "{slow} J, {fast} J");
+    assert!((over_a_turn(0.5, 1.0) / fast - 0.5).abs() < 1e-6);
+    // The lift's rate is rate × l_N, l_N² averages to h²(1 − 2/π) over a turn: c by hand, as in `HertzMindlin`.
+    let pair = PairProperties { damping: 0.7, ..sand_pair(0.6) };
+    let k = pair.normal_modulus * (5e-3_f64 * 1e-5).sqrt();
+    let half_side = 0.01 / 2_f64.sqrt();
+    let expected = pair.damping * (5e-3 * k).sqrt() * half_side.powi(2) * TAU * (1.0 - 2.0 / PI);
+    // The passage between corners, 0.001 rad wide, takes 0.2 % of it away.
+    assert!((fast / expected - 1.0).abs() < 5e-3, "{fast} against {expected}");
+}
+
+#[test]
+fn the_dashpot_on_the_lift_never_pulls_and_never_drives() {
+    for n in 0..200 {
+        let angle = 0.03 * f64::from(n);
+        for rate in [-1e4, -30.0, -1.0, 1.0, 30.0, 1e4] {
+            let (plain, torque) = taken_while_turning(0.0, angle, rate, 1e-7);
+            let (damped, damped_torque) = taken_while_turning(1.0, angle, rate, 1e-7);
+            assert!(damped >= plain, "angle {angle}, rate {rate}: {damped} W against {plain} W");
+            // A cube that falls too fast is let go; it is never drawn back.
+            assert!(damped_torque * torque >= 0.0, "{damped_torque} N·m against {torque} N·m");
+            // c is 2 N·s/m here: 1.5 m/s let go of 3 N.
+            if plain < -10.0 {
+                assert_eq!(damped_torque, 0.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn no_step_lets_one_dashpot_on_the_lift_stop_more_than_a_quarter_of_the_turning() {
+    for time_step in [1e-6, 1e-5, 1e-4, 1e-3, 1e-2] {
+        for n in 0..40 {
+            let (angle, rate) = (0.157 * f64::from(n), 1e-3);
+            let (_, plain) = taken_while_turning(0.0, angle, rate, time_step);
+            let (_, damped) = taken_while_turning(1.0, angle, rate, time_step);
+            // J = m r²/3, m = 2 m*.
+            let change = (damped - plain).abs() / (0.01 * 1e-4 / 3.0) * time_step;
+            assert!(change <= 0.25 * rate, "step {time_step}: {change} of {rate} rad/s");
+        }
+    }
+}
+
 #[test]
 fn circles_turn_as_spheres_do() {
     let law = law(GrainShape::Planes([PlaneShape::Circle { scale: 1.0 }; 3]), 5e-3);
@@ -336,6 +407,7 @@ fn shapes_that_are_no_body_or_outside_the_tested_range_are_refused_with_the_reas
     let circle = |scale| PlaneShape::Circle { scale };
     assert_eq!(refused(planes([circle(0.05); 3])).name, "arm scale");
     assert_eq!(refused(TiltingSettings { smoothing_rad: 0.3, ..of(0.5) }).name, "smoothing width");
+    assert_eq!(refused(TiltingSettings { lift_damping: -1.0, ..of(0.5) }).name, "damping of the lift");
     let error = refused(planes([rectangle(0.5, 1.0); 3]));
     assert!(error.name == "mismatch of the figures" && error.expected.contains("PlaneTilting"), "{error}");
     assert_eq!(refused(planes([circle(1.0), circle(1.0), rectangle(1.0, 1.0)])).name, "number of circles");

@@ -1,5 +1,6 @@
 //! Which experiment a scene is: the one place that looks at soil, tool and motion together.
 
+use super::collapse::Collapsing;
 use super::driver::Driver;
 use super::driving::Driving;
 use super::on_bed::OnBed;
@@ -8,7 +9,7 @@ use super::slip_sweep::SlipSweep;
 use super::study;
 use super::tire::TireRun;
 use super::{Ended, Law, Options, Progress, RunError, SetupError, WithLaw, with_law};
-use crate::scene::{Grains, Scenario, Soil, Tool};
+use crate::scene::{Grains, Motion, Scenario, Soil, Tool};
 use std::fs;
 
 /// Runs a scene into a folder.
@@ -44,6 +45,9 @@ impl WithLaw for OnGrains<'_> {
         match scenario.tool {
             Some(Tool::Tire(_)) => {
                 driver.drive(|progress| OnBed::<L, TireRun<L>>::begin(scenario, soil, law, progress))
+            }
+            None if matches!(scenario.motion, Some(Motion::Collapse(_))) => {
+                driver.drive(|progress| OnBed::<L, Collapsing<L>>::begin(scenario, soil, law, progress))
             }
             _ => driver.drive(|progress| OnBed::<L, Pressing<L>>::begin(scenario, soil, law, progress)),
         }

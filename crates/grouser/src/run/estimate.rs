@@ -56,7 +56,8 @@ fn on_grains(scenario: &Scenario, soil: &Grains) -> Result<Estimate, SetupError>
     // The top grain falls about once the bed's depth; coming to rest takes about three times as long.
     let fall = (2.0 * 1.2 * depth / gravity).sqrt();
     let settling_steps = (4.0 * fall / step.step_s) as u64;
-    let n_passes = Indenter::count(scenario) + usize::from(super::tire::parts(scenario).is_some());
+    let without_plates = super::tire::parts(scenario).is_some() || super::collapse::of(scenario).is_some();
+    let n_passes = Indenter::count(scenario) + usize::from(without_plates);
     let tool_s = n_passes as f64 * scenario.motion.as_ref().map_or(0.0, Motion::duration);
     let tool_steps = (tool_s / step.step_s) as u64;
     let copies = if tool_steps > 0 { 2 } else { 1 };

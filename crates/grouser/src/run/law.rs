@@ -230,6 +230,7 @@ mod tests {
             inertia: Default::default(),
             smoothing_rad: 0.01,
             build_up: 10.0,
+            lift_damping: 1.0,
             figures: Figures::OneBody,
         };
         let dials = Dials { rotation: Rotation::Tilting(angular), ..Dials::default() };

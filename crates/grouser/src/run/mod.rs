@@ -3,6 +3,8 @@
 mod bed;
 mod cache;
 mod clock;
+mod collapse;
+mod collapse_outcome;
 mod compose;
 mod driver;
 mod driving;
@@ -24,6 +26,7 @@ mod report;
 mod rigid_tool;
 mod slip_outcome;
 mod slip_sweep;
+mod slope;
 mod study;
 mod study_outcome;
 mod time_step;

@@ -112,7 +112,8 @@ impl<L: Law, P: Pass<L>> OnBed<L, P> {
                         longest_s: soil.settle.longest_s,
                     };
                     let bed = Box::new(bed::loose_bed(scenario, soil, law)?);
-                    Stage::Settling { bed, settling: Settling::new(criterion, time_step) }
+                    let step = time_step * soil.settle.time_step_factor;
+                    Stage::Settling { bed, settling: Settling::new(criterion, step) }
                 }
             },
             done: Vec::new(),
@@ -144,7 +145,7 @@ impl<L: Law, P: Pass<L>> OnBed<L, P> {
         let Stage::Settling { bed, settling } = &mut self.stage else { return Ok(Advanced::default()) };
         let settled = settling.advance(bed).map_err(|failure| {
             let time_s = settling.time();
-            let n_steps = (time_s / time_step).round() as u64;
+            let n_steps = (time_s / (time_step * soil.settle.time_step_factor)).round() as u64;
             RunError::numerics(&failure, n_steps, time_s, ", settling")
         })?;
         let Some(settled) = settled else { return Ok(Advanced::default()) };

@@ -207,6 +207,8 @@ impl<'a> Comparison<'a> {
                 let name = format!("{label}: pressure at {name}");
                 metrics.push(Metric::new(&name, plate.mean_pressure_before(share), "Pa"));
             }
+            let mean = plate.mean_pressure();
+            metrics.push(Metric::new(format!("{label}: mean pressure on the way down"), mean, "Pa"));
             metrics.push(Metric {
                 name: format!("{label}: energy residual"),
                 value: plate.ledger.residual_fraction(),
@@ -242,6 +244,12 @@ impl Pressed {
         let radius = self.diameter / 2.0;
         let points = sinkage.into_iter().zip(pressure).filter(|(sinkage, _)| *sinkage > 0.0);
         points.map(|(sinkage, pressure)| PlatePoint { radius, sinkage, pressure }).collect()
+    }
+
+    /// Mean pressure over all sinkages that were reached [Pa]: work over area and sinkage, which no single jump decides.
+    fn mean_pressure(&self) -> f64 {
+        let points = self.points();
+        points.iter().map(|point| point.pressure).sum::<f64>() / points.len().max(1) as f64
     }
 
     /// Mean pressure over the tenth of the way before `share` of it [Pa]: single samples of few grains jump.

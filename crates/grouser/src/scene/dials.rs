@@ -159,6 +159,9 @@ pub struct Tilting {
     /// Impact times over which the torque of a normal force builds up [-]; 0 is the law as printed at every instant.
     #[serde(default = "build_up")]
     pub build_up: f64,
+    /// Dashpot on the lift over that of the normal force [-]; 0 is the law as printed.
+    #[serde(default = "lift_damping")]
+    pub lift_damping: f64,
     /// Whether the three figures are sections of one body.
     #[serde(default)]
     pub figures: Figures,
@@ -172,11 +175,15 @@ fn build_up() -> f64 {
     TiltingSettings::of(GrainShape::Cube).build_up
 }
 
+fn lift_damping() -> f64 {
+    TiltingSettings::of(GrainShape::Cube).lift_damping
+}
+
 impl Tilting {
     /// The same for the contact law.
     pub fn settings(&self) -> TiltingSettings {
-        let Self { shape, arms, inertia, smoothing_rad, build_up, .. } = *self;
-        TiltingSettings { shape, arms, inertia, smoothing_rad, build_up }
+        let Self { shape, arms, inertia, smoothing_rad, build_up, lift_damping, .. } = *self;
+        TiltingSettings { shape, arms, inertia, smoothing_rad, build_up, lift_damping }
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Adding a kind of soil, tool, motion or reference is one file here and one variant of its enum.
 
+mod collapse;
 mod dials;
 mod locate;
 mod material;
@@ -22,6 +23,7 @@ mod tool;
 mod validate;
 mod vehicle;
 
+pub use collapse::Collapse;
 pub use dials::{
     ActiveZone, Dials, Dlr, Figures, Forces, Precision, RestitutionTail, Rolling, Rotation, Tilting,
 };

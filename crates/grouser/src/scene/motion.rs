@@ -1,6 +1,6 @@
 //! How tools move.
 
-use super::{Roll, Route, Slips};
+use super::{Collapse, Roll, Route, Slips};
 use serde::{Deserialize, Serialize};
 
 /// Kinds of motion.
@@ -14,6 +14,8 @@ pub enum Motion {
     Route(Route),
     /// Down until the ground carries a load, then rolling with a given slip.
     Roll(Roll),
+    /// No tool: a part of the bed is taken away, and the rest slides into a slope.
+    Collapse(Collapse),
 }
 
 impl Motion {
@@ -21,7 +23,7 @@ impl Motion {
     pub fn speed(&self) -> f64 {
         match self {
             Motion::Press(press) => press.speed_m_s,
-            Motion::Slips(_) => 0.0,
+            Motion::Slips(_) | Motion::Collapse(_) => 0.0,
             Motion::Route(route) => route.shown_speed_m_s,
             // The top of a tire that slips moves faster than twice the speed.
             Motion::Roll(roll) => {
@@ -37,6 +39,7 @@ impl Motion {
             Motion::Route(route) => route.length() / route.shown_speed_m_s,
             Motion::Slips(_) => 0.0,
             Motion::Roll(roll) => roll.duration(),
+            Motion::Collapse(collapse) => collapse.longest_s,
         }
     }
 }

@@ -136,11 +136,19 @@ pub struct Settle {
     pub friction: Option<f64>,
     /// Grains that `dials.rotation: Fixed` holds turn freely while the bed settles: it is then the bed of free rotation.
     pub is_turning: bool,
+    /// Time step while the bed settles over that of the experiment [-]: what a bed loses on its way to rest needs no exact ledger.
+    pub time_step_factor: f64,
 }
 
 impl Default for Settle {
     fn default() -> Self {
-        Settle { energy_ratio: 1e-5, longest_s: 5.0, friction: None, is_turning: false }
+        Settle {
+            energy_ratio: 1e-5,
+            longest_s: 5.0,
+            friction: None,
+            is_turning: false,
+            time_step_factor: 1.0,
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Physics that a scene must obey, refused before anything is computed.
 
+mod collapse;
 mod dials;
 mod drive;
 mod grains;
@@ -63,7 +64,7 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
             _ => check.fail(
                 "motion",
                 "no experiment puts this soil, tool and motion together",
-                "Grains with Plates or Mesh and Press, or with Tire and Roll; PlateTested with RigidWheel and Slips; PressureSinkage with Vehicle and Route",
+                "Grains with Plates or Mesh and Press, or with Tire and Roll, or with Collapse and no tool; PlateTested with RigidWheel and Slips; PressureSinkage with Vehicle and Route",
                 "a tool or a motion of another kind of scene",
             ),
         },
@@ -73,6 +74,7 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
             "`motion: Press(…)`",
             "the motion was deleted or commented out",
         ),
+        (None, Some(Motion::Collapse(collapse))) => collapse::validate(&mut check, scenario, collapse),
         (None, Some(_)) => check.fail(
             "motion",
             "the scene has a motion but no tool",

@@ -4,6 +4,7 @@ mod both_searches;
 mod bytes;
 mod killed;
 mod messages;
+mod repose;
 mod slips;
 mod study;
 mod vehicle;

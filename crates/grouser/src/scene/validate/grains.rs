@@ -50,7 +50,7 @@ pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains) {
         return;
     }
     room(check, bed);
-    settle(check, bed);
+    settle(check, scenario, bed);
     own_weight(check, scenario, bed);
 }
 
@@ -94,7 +94,7 @@ fn room(check: &mut Check, bed: &Grains) {
     }
 }
 
-fn settle(check: &mut Check, bed: &Grains) {
+fn settle(check: &mut Check, scenario: &Scenario, bed: &Grains) {
     let ratio = bed.settle.energy_ratio;
     check.require(
         "soil.settle.energy_ratio",
@@ -107,6 +107,14 @@ fn settle(check: &mut Check, bed: &Grains) {
         check.friction("soil.settle.friction", friction);
     }
     check.positive("soil.settle.longest_s", bed.settle.longest_s, "a time [s]");
+    let factor = bed.settle.time_step_factor;
+    check.require(
+        "soil.settle.time_step_factor",
+        factor,
+        factor > 0.0 && factor <= 10.0 && factor * scenario.dials.time_step_fraction <= 1.0,
+        "in (0, 10], and at most 1 times `dials.time_step_fraction`",
+        "a step in seconds where the ratio of two steps is asked",
+    );
 }
 
 /// A bed so soft that it cannot carry itself.
