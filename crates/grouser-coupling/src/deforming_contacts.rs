@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 
 /// Contacts of the deforming surface of one solid with the grains of one bed, and what they remember.
 ///
-/// Each step: [`Self::follow`] brings the surface to the nodes, [`Self::forces`] loads the grains, [`Self::spread`] gives
-/// the opposite forces to the nodes.
+/// Each step ([`crate::coupled_step`]): [`Self::follow`] or [`Self::follow_in`] brings the surface to the nodes,
+/// [`Self::forces`] loads the grains, [`Self::spread`] gives the opposite forces to the nodes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "M: Serialize + serde::de::DeserializeOwned")]
 pub struct DeformingContacts<M> {
@@ -121,12 +121,23 @@ impl<M> DeformingContacts<M> {
 
     /// Brings the surface to where the nodes are now [m], moving as they do [m/s].
     pub fn follow(&mut self, position: impl Fn(u32) -> Vec3, velocity: impl Fn(u32) -> Vec3) {
+        self.bring_to(position, |mirror, vertex, _| mirror.at_vertex(vertex, &velocity));
+    }
+
+    /// Brings the surface to where the nodes are now [m], `dt` [s] after they were asked for last; it moves with its mean
+    /// velocity since.
+    pub fn follow_in(&mut self, dt: f64, position: impl Fn(u32) -> Vec3) {
+        self.bring_to(position, |_, _, way| way / dt);
+    }
+
+    /// `velocity(mirror, vertex, way)` [m/s] of a vertex that has moved by `way` [m].
+    fn bring_to(&mut self, position: impl Fn(u32) -> Vec3, velocity: impl Fn(&Mirror, usize, Vec3) -> Vec3) {
         let mut moved = 0.0_f64;
         for vertex in 0..self.mirror.n_vertices() {
             let place = self.mirror.at_vertex(vertex, &position);
             let before = std::mem::replace(&mut self.surface.vertices[vertex], place);
             moved = moved.max((place - before).norm());
-            self.velocity[vertex] = self.mirror.at_vertex(vertex, &velocity);
+            self.velocity[vertex] = velocity(&self.mirror, vertex, place - before);
         }
         self.moved += moved;
         self.candidates.surface_has_deformed();

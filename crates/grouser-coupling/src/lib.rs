@@ -30,6 +30,7 @@
 mod candidates;
 mod closest_point;
 mod contact_pass;
+mod coupled_step;
 mod deforming_contacts;
 mod mirror;
 mod neighbourhood;
@@ -38,6 +39,7 @@ mod surface_contacts;
 pub use candidates::Margin;
 pub use closest_point::{Feature, closest_point, natural_coordinates};
 pub use contact_pass::{Deepest, Seen, Step};
+pub use coupled_step::{MovedGrains, SteppedSolid, coupled_step};
 pub use deforming_contacts::DeformingContacts;
 pub use mirror::{Mirror, MirrorError};
 pub use neighbourhood::{SMOOTH_ANGLE, Touch, touches};

@@ -4,6 +4,7 @@ mod angular;
 mod bodies;
 mod chung_ooi;
 mod coupling;
+mod elastic_block;
 mod precision;
 mod solids;
 mod two_bodies;
@@ -122,7 +123,8 @@ const GRAINS: &[(&str, Rows)] = &[
     ("angular grains at rest", angular::rest_and_extremes),
     ("cut surfaces", coupling::cut_surfaces),
     ("rolling over triangles", coupling::rolling_over_triangles),
-    ("bead on an elastic block", coupling::bead_on_block),
+    ("bead on an elastic block", elastic_block::bead_on_block),
+    ("bead pressed into an elastic block", elastic_block::bead_pressed),
     ("mixed precision", precision::mixed),
     ("single precision", precision::single),
 ];

@@ -176,3 +176,32 @@ fn wrong_tires_are_refused_with_line_and_remedy() {
         assert!(message.contains("expected:"), "{to}: {message}");
     }
 }
+
+#[test]
+fn a_tread_that_turns_inside_out_fails_with_element_step_time_and_remedy_and_keeps_a_checkpoint() {
+    // A rim that is faster than the waves of a very soft rubber.
+    const TIRE: &str = include_str!("../../../../scenarios/tire.ron");
+    const SETS: &str = r#"soil.container.size_m=(0.7, 0.34, 0.3)
+        soil.layers=[(material: "soil", sizes: Uniform(radius_m: (0.019, 0.021)), depth_m: 0.06)]
+        materials.rubber.young_pa=1e5|tool.n_elements=5760|tool.tread=Smooth|tool.model=FiniteStrain|tool.inflation_pa=0
+        motion.load_n=20|motion.sinking_speed_m_s=5|motion.speed_m_s=60|motion.ramp_s=1e-4|motion.travel_m=0.2
+        motion.gap_m=0.0005|outputs.checkpoint_every_s=1e-3|outputs.sample_every_s=5e-4"#;
+    let home = tempfile::tempdir().unwrap();
+    let (scene, out) = (home.path().join("tire.ron"), home.path().join("out"));
+    fs::write(&scene, TIRE).unwrap();
+    let (scene, folder) = (scene.display().to_string(), out.display().to_string());
+    let mut arguments = vec!["run", &scene, "--quick", "--out", &folder];
+    SETS.split(['\n', '|']).for_each(|set| arguments.extend(["--set", set.trim()]));
+    let first = grouser(home.path(), &arguments);
+    arguments.push("--resume");
+    // The checkpoint leads to the same end.
+    for output in [first, grouser(home.path(), &arguments)] {
+        let message = errors(&output);
+        assert_eq!(output.status.code(), Some(3), "{message}");
+        for part in ["element ", "is inverted", "(step ", " s, travelling", "remedy: ", "checkpoint was kept"]
+        {
+            assert!(message.contains(part), "{part} is not in: {message}");
+        }
+        assert!(out.join("checkpoint.bin").is_file());
+    }
+}

@@ -168,7 +168,7 @@ impl From<DynamicsError> for Broken {
     fn from(error: DynamicsError) -> Self {
         let remedy = match &error {
             DynamicsError::InvertedElement { .. } => {
-                "take a finer or thicker tread, a higher inflation, or a smaller load; try `model: FiniteStrain`"
+                "take a finer or thicker tread, a higher inflation, a smaller load or a longer ramp; try `model: FiniteStrain`"
             }
             _ => "take `sub_steps: Auto`, or more of them",
         };

@@ -1,11 +1,11 @@
-//! An elastic tread on its rim among grains: the coupled step of P0 Fig. 8, numbered as in `docs/theory/coupling.md`.
+//! An elastic tread on its rim among grains, in the coupled step of `docs/theory/coupling.md`.
 
 use super::axle::{Axle, Place};
 use super::body::StepInput;
 use super::traction::Traction;
 use super::tread::{Tread, TreadError};
 use crate::run::Law;
-use grouser_coupling::{DeformingContacts, Margin, Mirror, Step};
+use grouser_coupling::{DeformingContacts, Margin, Mirror, MovedGrains, Step, SteppedSolid, coupled_step};
 use grouser_dem::Grains;
 use grouser_fem::DynamicsError;
 use grouser_geometry::Vec3;
@@ -22,14 +22,54 @@ pub struct ElasticTire<L: Law> {
     tread: Tread,
     contacts: DeformingContacts<L::Memory>,
     sub_steps: u32,
-    /// Contact forces on the nodes in the last step, as impulses at its end [N].
-    #[serde(skip)]
-    impulsive: Vec<Vec3>,
     /// Work of the grains on the tread [J], and its power at the end of the last step [W].
     contact_work: [f64; 2],
     /// Time by the clock spent in the solid and in contacts since this process began.
     #[serde(skip)]
     spent: [Duration; 2],
+}
+
+/// The tread on its axle within a step.
+struct Carried<'a> {
+    tread: &'a mut Tread,
+    axle: &'a Axle,
+    gravity: Vec3,
+    /// Time by the clock spent in the solid.
+    spent: Duration,
+}
+
+impl Carried<'_> {
+    fn timed<T>(&mut self, work: impl FnOnce(&mut Tread) -> T) -> T {
+        let begun = Instant::now();
+        let result = work(self.tread);
+        self.spent += begun.elapsed();
+        result
+    }
+}
+
+impl SteppedSolid for Carried<'_> {
+    type Error = DynamicsError;
+
+    fn carry(&mut self, share: f64, h: f64) {
+        let (place, accelerations, gravity) = (self.axle.at(share), self.axle.accelerations(), self.gravity);
+        self.timed(|tread| tread.carry(&place, accelerations, gravity, h));
+    }
+    fn advance_positions(&mut self, h: f64) -> Result<(), DynamicsError> {
+        self.timed(|tread| tread.solid.advance_positions(h))
+    }
+    fn advance_velocities(&mut self, h: f64) -> Result<(), DynamicsError> {
+        self.timed(|tread| tread.solid.advance_velocities(h))
+    }
+    fn place(&self, node: u32) -> Vec3 {
+        self.tread.place(node)
+    }
+    fn clear_forces(&mut self) {
+        self.tread.solid.state.applied.fill(Vec3::zeros());
+    }
+    fn add_force(&mut self, node: u32, force: Vec3) {
+        let in_frame = self.tread.to_frame(force);
+        self.tread.solid.state.applied[node as usize] += in_frame;
+    }
 }
 
 impl<L: Law> ElasticTire<L> {
@@ -71,17 +111,10 @@ impl<L: Law> ElasticTire<L> {
         let mass = |n: u32| if is_held(n) { f64::INFINITY } else { tread.solid.nodal_mass()[n as usize] };
         let contacts =
             DeformingContacts::new(mirror, |n| tread.place(n), material, margin).with_nodal_masses(mass);
-        Ok(Self {
-            tread,
-            contacts,
-            sub_steps,
-            impulsive: Vec::new(),
-            contact_work: [0.0; 2],
-            spent: [Duration::ZERO; 2],
-        })
+        Ok(Self { tread, contacts, sub_steps, contact_work: [0.0; 2], spent: [Duration::ZERO; 2] })
     }
 
-    /// One coupled step of `dt` [s]: P0 Fig. 8, where the bed has moved its grains to the end of the step.
+    /// One coupled step of `dt` [s]; the bed has moved its grains to its end.
     ///
     /// # Errors
     /// When an element turns inside out or the motion grows out of nothing.
@@ -92,46 +125,22 @@ impl<L: Law> ElasticTire<L> {
         StepInput { law, table, gravity, dt, .. }: StepInput<L>,
         traction: &mut Traction,
     ) -> Result<(), DynamicsError> {
-        let (n, h, begun) = (self.sub_steps, dt / f64::from(self.sub_steps), Instant::now());
-        // C2. The axle moves and carries the rim.
+        let begun = Instant::now();
         axle.predict(dt);
-        let share = |k: u32| axle.at(f64::from(k) / f64::from(n));
-        // C3. The solid follows in n sub-steps, all but the last one without contacts.
-        self.impulsive.clone_from(&self.tread.solid.state.applied);
-        self.tread.solid.state.applied.fill(Vec3::zeros());
-        if n == 1 {
-            // The accelerations hold the contacts' share already.
-            self.impulsive.fill(Vec3::zeros());
-        }
-        for k in 1..n {
-            self.tread.carry(&share(k), axle.accelerations(), gravity, h);
-            self.tread.solid.step(h)?;
-        }
-        self.tread.carry(&share(n), axle.accelerations(), gravity, h);
-        self.tread.solid.advance_positions(h)?;
-        let solid_done = Instant::now();
-        // C4. Its displaced surface is mirrored.
-        let (tread, place) = (&self.tread, axle.now());
-        let ahead = |node| tread.velocity_ahead(node, place, 0.5 * h, &self.impulsive);
-        self.contacts.follow(|node| tread.place(node), ahead);
-        // C5. Pairs, and the forces between them; the grains receive theirs.
         let step = Step { law, table, time_step: dt, fastest: grains.fastest() };
         let Grains { spheres, ids, loads, orientations, .. } = grains;
-        let grains = (&spheres[..], &ids[..], orientations.as_deref());
-        self.contacts.forces_on_turned(grains, loads, &step, |seen| traction.add(&seen, &place.position));
-        // C6. The nodes receive theirs, as the impulse of the whole step at its end.
-        let mut applied = std::mem::take(&mut self.tread.solid.state.applied);
-        self.contacts
-            .spread(|node, force| applied[node as usize] += self.tread.to_frame(force) * f64::from(n));
-        self.tread.solid.state.applied = applied;
-        let contacts_done = Instant::now();
-        // C7. The solid's accelerations and velocities at the end of the step.
-        self.tread.solid.advance_velocities(h)?;
+        let moved = MovedGrains { spheres, ids, loads, orientations: orientations.as_deref() };
+        let mut carried = Carried { tread: &mut self.tread, axle, gravity, spent: Duration::ZERO };
+        let centre = axle.now().position;
+        coupled_step(&mut carried, &mut self.contacts, moved, &step, self.sub_steps, |seen| {
+            traction.add(&seen, &centre);
+        })?;
+        let of_solid = carried.spent;
         // C8. The axle receives what the rim bears.
         axle.receive(self.tread.force_on_rim().z, traction.last().z);
         self.count_work(axle.now(), dt);
-        self.spent[0] += (solid_done - begun) + contacts_done.elapsed();
-        self.spent[1] += contacts_done - solid_done;
+        self.spent[0] += of_solid;
+        self.spent[1] += begun.elapsed() - of_solid;
         Ok(())
     }
 

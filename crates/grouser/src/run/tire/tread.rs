@@ -129,22 +129,7 @@ impl Tread {
 
     /// Velocity of a node in the world [m/s]; `axle` is where the frame is.
     pub fn velocity(&self, node: u32, axle: &Place) -> Vec3 {
-        self.in_world(node, self.solid.state.velocity[node as usize], axle)
-    }
-
-    /// [`Self::velocity`] foreseen between `advance_positions` and `advance_velocities` for the instant of the places, half a
-    /// sub-step `half` [s] on: with the present accelerations, and with the impulse of contact forces `impulsive` [N] in the
-    /// solid's frame as large as those of the last step.
-    pub fn velocity_ahead(&self, node: u32, axle: &Place, half: f64, impulsive: &[Vec3]) -> Vec3 {
-        let (n, State { velocity, acceleration, supports, .. }) = (node as usize, &self.solid.state);
-        if supports.contains_key(&node) {
-            return self.velocity(node, axle);
-        }
-        let expected = acceleration[n] + impulsive[n] / self.solid.nodal_mass()[n];
-        self.in_world(node, velocity[n] + expected * half, axle)
-    }
-
-    fn in_world(&self, node: u32, v: Vec3, axle: &Place) -> Vec3 {
+        let v = self.solid.state.velocity[node as usize];
         if self.is_attached() {
             let arm = self.place(node) - axle.position;
             axle.velocity + (Vec3::y() * axle.spin).cross(&arm) + self.solid.state.frame.rotation * v
