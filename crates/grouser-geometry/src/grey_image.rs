@@ -34,6 +34,15 @@ pub enum GreyImageError {
         /// What was found.
         found: String,
     },
+    /// Not a BMP file of greys.
+    #[error(
+        "expected a BMP image of 8 grey bits a sample, not compressed, found {found}; remedy: save it as greys, e.g. as 16-bit PNG \
+         or PGM"
+    )]
+    NotBmp {
+        /// What was found.
+        found: String,
+    },
     /// The image ends early.
     #[error("the image has {found} samples, expected {expected}; usual cause: a file cut off")]
     TooShort {

@@ -31,6 +31,7 @@
 //! ```
 
 pub mod abaqus;
+pub mod bmp;
 mod bounding_box;
 pub mod esri_ascii;
 pub mod generate;

@@ -5,7 +5,7 @@
 use grouser_geometry::{Pose, Vec3};
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
-use crate::imprint::Imprint;
+use crate::imprint::{Imprint, MOST_SAG};
 use crate::polygon::{
     Corners, OneArray, PartialLoad, PolygonLoad, Reloaded, Stiff, SubTriangles, ThreeArrays, integrate,
 };
@@ -95,10 +95,10 @@ struct Node {
     depth: f64,
 }
 
-/// Whether the gear presses nowhere between these corners: none is covered, or all lie below the gear.
+/// Whether the gear presses nowhere between these corners: none is covered, or all lie below the gear by more than it sags in between.
 #[inline(always)]
-fn is_free(corners: &[Node]) -> bool {
-    corners.iter().all(|c| c.share == 0.0) || corners.iter().all(|c| c.depth <= 0.0)
+fn is_free(corners: &[Node], sag: f64) -> bool {
+    corners.iter().all(|c| c.share == 0.0) || corners.iter().all(|c| c.depth <= -sag)
 }
 
 impl FootImprint {
@@ -137,7 +137,7 @@ impl FootImprint {
             for j in 0..imprint.n_y {
                 for i in 0..imprint.n_x {
                     let n = j * imprint.n_x + i;
-                    if imprint.nodes[n].coverage >= 0.5 && nodes[n].depth > 0.0 {
+                    if imprint.nodes[n].is_inside && nodes[n].depth > 0.0 {
                         terrain.stamp((imprint.j_0 + j) * n_grid + imprint.i_0 + i, nodes[n].height);
                     }
                 }
@@ -202,11 +202,17 @@ impl FootImprint {
                     share = if is_loaded { share.round() } else { 0.0 };
                     h = h.min(ground);
                 }
-                if h < ground {
+                if h < ground + MOST_SAG * imprint.spacing {
                     let is_soil = share > 0.0 && !terrain.is_fixed(node);
                     deepest = Some(deepest.unwrap_or(0.0_f64).max(if is_soil { z_0 - h } else { 0.0 }));
                 }
                 nodes[n] = Node { z: z_0 - h, height: h, share, depth: ground - h };
+            }
+        }
+        if !imprint.edges.is_empty() {
+            let own: Vec<f64> = nodes.iter().map(|node| node.depth).collect();
+            for (n, seen) in &imprint.edges {
+                nodes[*n].depth = seen.iter().map(|&(m, weight)| weight * own[m]).sum();
             }
         }
         (nodes, deepest)
@@ -269,12 +275,14 @@ impl FootImprint {
         listen: &mut impl FnMut(&LoadedPolygon),
     ) {
         let imprint = &self.layers[layer];
+        // Shoes are flat, wheels lie in the last layer.
+        let is_curved = integration.partial == PartialLoad::Proportional && layer + 1 == self.layers.len();
         let (n_x, n_grid) = (imprint.n_x, terrain.grid().n_x());
         for j in 0..imprint.n_y.saturating_sub(1) {
             for i in 0..n_x.saturating_sub(1) {
                 let n = j * n_x + i;
                 let cell = [nodes[n], nodes[n + 1], nodes[n + n_x], nodes[n + n_x + 1]];
-                if is_free(&cell) {
+                if is_free(&cell, MOST_SAG * imprint.spacing) {
                     continue;
                 }
                 // Diagonals alternate so that no direction is preferred.
@@ -287,11 +295,23 @@ impl FootImprint {
                 for corners in &triangles {
                     let [p, q, r] = *corners;
                     let at = [cell[p.0 + 2 * p.1], cell[q.0 + 2 * q.1], cell[r.0 + 2 * r.1]];
-                    if is_free(&at) {
+                    let is_covered = at.iter().any(|c| c.share > 0.0);
+                    let corners_at = Corners {
+                        z: at.map(|c| c.z),
+                        share: at.map(|c| c.share),
+                        depth: at.map(|c| c.depth),
+                        sag: if is_curved {
+                            imprint.sag(corners.map(|(a, b)| (i + a, j + b)))
+                        } else {
+                            [0.0; 3]
+                        },
+                    };
+                    if !is_covered || corners_at.is_free() {
                         continue;
                     }
                     let on_grid = |(a, b): (usize, usize)| (j_g + b) * n_grid + i_g + a;
-                    let answer = answer(terrain, &[on_grid(p), on_grid(q), on_grid(r)], &at, integration);
+                    let on_grid = [on_grid(p), on_grid(q), on_grid(r)];
+                    let answer = answer(terrain, &on_grid, &corners_at, integration);
                     self.collect(layer, (i, j), corners, &at, answer, load, listen);
                 }
             }
@@ -369,15 +389,15 @@ impl FootImprint {
 
 /// F3, F4: the ground's answer under one polygon.
 #[inline(always)]
-fn answer(terrain: &Terrain, on_grid: &[usize; 3], at: &[Node; 3], integration: &Integration) -> PolygonLoad {
-    let corners = Corners {
-        z: [at[0].z, at[1].z, at[2].z],
-        share: [at[0].share, at[1].share, at[2].share],
-        depth: [at[0].depth, at[1].depth, at[2].depth],
-    };
+fn answer(
+    terrain: &Terrain,
+    on_grid: &[usize; 3],
+    corners: &Corners,
+    integration: &Integration,
+) -> PolygonLoad {
     let (sub, partial) = (&integration.sub_triangles, integration.partial);
     if on_grid.iter().all(|&node| terrain.is_fixed(node)) {
-        return integrate(sub, Stiff(Terrain::FIXED_STIFFNESS), &corners, partial, 0.0); // P2 Eq. (4)
+        return integrate(sub, Stiff(Terrain::FIXED_STIFFNESS), corners, partial, 0.0); // P2 Eq. (4)
     }
     let field = terrain.field();
     let per_resolution = 1.0 / field.resolution();
@@ -390,17 +410,17 @@ fn answer(terrain: &Terrain, on_grid: &[usize; 3], at: &[Node; 3], integration: 
     if field.is_per_node() {
         let virgin = ThreeArrays { pressures: on_grid.map(|node| field.of_node(node)), per_resolution };
         match elastic {
-            None => integrate(sub, virgin, &corners, partial, contact),
+            None => integrate(sub, virgin, corners, partial, contact),
             Some((stiffness, residual)) => {
-                integrate(sub, Reloaded { virgin, stiffness, residual }, &corners, partial, 0.0)
+                integrate(sub, Reloaded { virgin, stiffness, residual }, corners, partial, 0.0)
             }
         }
     } else {
         let virgin = OneArray { pressures: field.of_node(0), per_resolution };
         match elastic {
-            None => integrate(sub, virgin, &corners, partial, contact),
+            None => integrate(sub, virgin, corners, partial, contact),
             Some((stiffness, residual)) => {
-                integrate(sub, Reloaded { virgin, stiffness, residual }, &corners, partial, 0.0)
+                integrate(sub, Reloaded { virgin, stiffness, residual }, corners, partial, 0.0)
             }
         }
     }

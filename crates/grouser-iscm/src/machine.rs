@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::gear::{Fit, Foot, GearError};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Configuration, Joint, Mechanism};
+use crate::route::Route;
 
 /// A vehicle ready to stand on ground.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,6 +56,27 @@ impl Machine {
             gear.check().map_err(|reason| MachineError::Gear { foot, reason })?;
         }
         Ok(Self { mechanism, feet })
+    }
+
+    /// The machine `distance` \[m\] along a route with its origin at `height` \[m\], steered, all free joints at zero.
+    pub fn on_route(&self, route: &Route, distance: f64, height: f64) -> Configuration {
+        let (position, heading) = route.at(distance);
+        let mut at = self.mechanism.at(position, heading, height);
+        self.steer(route, distance, &mut at);
+        at
+    }
+
+    /// Turns every steered joint so that its body's heading is that of the route at the body's distance behind the first one.
+    pub(crate) fn steer(&self, route: &Route, distance: f64, at: &mut Configuration) {
+        for (n, body) in self.mechanism.bodies().iter().enumerate().skip(1) {
+            if let Joint::Held { axis } = body.joint
+                && axis.z.abs() > 0.5
+            {
+                let (_, heading) = route.at(distance + body.attachment.x);
+                let turn = heading - at.heading;
+                at.joints[n] = axis.z.signum() * turn.sin().atan2(turn.cos());
+            }
+        }
     }
 
     /// Which of the machine's slack belts are those of a foot, counted as in `Configuration::tracks`.

@@ -242,6 +242,25 @@ pub(crate) struct Corners {
     pub share: [f64; 3],
     /// Depth of the gear below the present ground \[m\]; negative where it is above.
     pub depth: [f64; 3],
+    /// How a curved underside lies below the straight one between its corners: by Σ b_k b_l `sag` over the sides 0–1, 1–2, 2–0 \[m\].
+    pub sag: [f64; 3],
+}
+
+impl Corners {
+    /// Sinkage and depth are larger than those between the corners by at least and at most this \[m\].
+    #[inline(always)]
+    fn sag_range(&self) -> [f64; 2] {
+        let [a, b, c] = self.sag;
+        // Σ b_k b_l is at most a third, each product at most a quarter.
+        [0.25 * (a.min(0.0) + b.min(0.0) + c.min(0.0)), a.max(b).max(c).max(0.0) / 3.0]
+    }
+
+    /// Whether the gear presses nowhere.
+    #[inline(always)]
+    pub fn is_free(&self) -> bool {
+        let [g_0, g_1, g_2] = self.depth;
+        g_0.max(g_1).max(g_2) + self.sag_range()[1] <= 0.0
+    }
 }
 
 /// Means over a triangle of pressure and what follows from it.
@@ -269,13 +288,16 @@ pub(crate) fn integrate(
     partial: PartialLoad,
     contact: f64,
 ) -> PolygonLoad {
-    let Corners { z, share, depth } = corners;
-    let is_deep = partial == PartialLoad::Step || depth.iter().all(|&g| g >= contact);
+    let Corners { z, share, depth, sag } = corners;
+    let [least, most] = corners.sag_range();
+    let is_deep = partial == PartialLoad::Step || depth.iter().all(|&g| g + least >= contact);
     let is_full = *share == [1.0; 3] && is_deep;
     let is_smooth = is_full || (is_deep && partial == PartialLoad::Proportional);
-    let range = [z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2])];
+    let range = [z[0].min(z[1]).min(z[2]) + least, z[0].max(z[1]).max(z[2]) + most];
     match ground.lines(range) {
-        Some(lines) if is_smooth && lines.n_kinks == 0 => on_a_line(sub, lines.c, lines.k, z, share, is_full),
+        Some(lines) if is_smooth && lines.n_kinks == 0 && (is_full || *sag == [0.0; 3]) => {
+            on_a_line(sub, lines.c, lines.k, corners, is_full)
+        }
         Some(lines) if partial == PartialLoad::Proportional => on_lines(sub, &lines, corners, contact),
         _ => by_centres(sub, ground, corners, partial, contact, is_full),
     }
@@ -286,13 +308,14 @@ pub(crate) fn integrate(
 fn by_centres(
     sub: &SubTriangles,
     ground: impl Response,
-    Corners { z, share, depth }: &Corners,
+    Corners { z, share, depth, sag }: &Corners,
     partial: PartialLoad,
     contact: f64,
     is_full: bool,
 ) -> PolygonLoad {
     let mut load = PolygonLoad::default();
     for b in &sub.centres {
+        let below = b[0] * b[1] * sag[0] + b[1] * b[2] * sag[1] + b[2] * b[0] * sag[2];
         let (multiplier, growth) = if is_full {
             (1.0, 0.0)
         } else {
@@ -301,7 +324,7 @@ fn by_centres(
                 PartialLoad::Step if l_c >= 0.5 - 1e-12 => (1.0, 0.0),
                 PartialLoad::Step => continue,
                 PartialLoad::Proportional => {
-                    let g = blend(b, depth);
+                    let g = blend(b, depth) + below;
                     if g <= 0.0 {
                         continue;
                     } else if g < contact {
@@ -312,7 +335,7 @@ fn by_centres(
                 }
             }
         };
-        let (p, slope) = ground.pressure(b, blend(b, z));
+        let (p, slope) = ground.pressure(b, blend(b, z) + below);
         let f = p * multiplier;
         load.pressure += f;
         load.stiffness += slope * multiplier + p * growth;
@@ -332,7 +355,7 @@ fn by_centres(
 fn on_lines(
     sub: &SubTriangles,
     lines: &Lines,
-    Corners { z, share, depth }: &Corners,
+    Corners { z, share, depth, sag }: &Corners,
     contact: f64,
 ) -> PolygonLoad {
     let per_contact = 1.0 / contact.max(1e-300);
@@ -340,7 +363,16 @@ fn on_lines(
     let (mut moment_0, mut moment_1) = ([0.0; LANES], [0.0; LANES]);
     let kinks = &lines.kinks[..lines.n_kinks];
     for four in &sub.fours {
-        let (z, g, l_c) = (four.blend(z), four.blend(depth), four.blend(share));
+        let (mut z, mut g, l_c) = (four.blend(z), four.blend(depth), four.blend(share));
+        if *sag != [0.0; 3] {
+            let b = &four.b;
+            for n in 0..LANES {
+                let below =
+                    b[0][n] * b[1][n] * sag[0] + b[1][n] * b[2][n] * sag[1] + b[2][n] * b[0][n] * sag[2];
+                z[n] += below;
+                g[n] += below;
+            }
+        }
         let (mut p, mut slope) = ([0.0; LANES], [lines.k; LANES]);
         for n in 0..LANES {
             p[n] = lines.c + lines.k * z[n];
@@ -378,14 +410,17 @@ fn on_a_line(
     sub: &SubTriangles,
     c: f64,
     k: f64,
-    z: &[f64; 3],
-    share: &[f64; 3],
+    Corners { z, share, sag, .. }: &Corners,
     is_full: bool,
 ) -> PolygonLoad {
     let unshared = sub.second.map(|m| c / 3.0 + k * blend(&m, z));
     if is_full {
-        let pressure = c + k * (z[0] + z[1] + z[2]) / 3.0;
-        return PolygonLoad { pressure, moment: unshared, stiffness: k };
+        let (second, third) = (&sub.second, &sub.third);
+        let below = sag[0] * second[0][1] + sag[1] * second[1][2] + sag[2] * second[2][0];
+        let below_at = |m: usize| sag[0] * third[0][1][m] + sag[1] * third[1][2][m] + sag[2] * third[2][0][m];
+        let pressure = c + k * ((z[0] + z[1] + z[2]) / 3.0 + below);
+        let moment = [0, 1, 2].map(|m| unshared[m] + k * below_at(m));
+        return PolygonLoad { pressure, moment, stiffness: k };
     }
     let moment = [0, 1, 2].map(|m| {
         (0..3).map(|i| share[i] * (c * sub.second[i][m] + k * blend(&sub.third[i][m], z))).sum::<f64>()
@@ -406,7 +441,7 @@ pub fn polygon_force(
 ) -> f64 {
     let ground = OneArray { pressures: array.pressures(), per_resolution: 1.0 / array.resolution() };
     let share = is_loaded.map(|l| f64::from(u8::from(l)));
-    let corners = Corners { z, share, depth: z };
+    let corners = Corners { z, share, depth: z, sag: [0.0; 3] };
     area * integrate(sub, ground, &corners, PartialLoad::Step, 0.0).pressure
 }
 
@@ -431,7 +466,7 @@ mod tests {
     fn the_step_takes_a_quarter_or_three_quarters_for_even_resolutions_only() {
         let covered = |r: usize, share: [f64; 3]| {
             let sub = SubTriangles::new(r);
-            let corners = Corners { z: [1.0; 3], share, depth: [1.0; 3] };
+            let corners = Corners { z: [1.0; 3], share, depth: [1.0; 3], sag: [0.0; 3] };
             integrate(&sub, Stiff(1.0), &corners, PartialLoad::Step, 0.0).pressure
         };
         for r in [2, 4, 6, 12] {
@@ -453,7 +488,7 @@ mod tests {
                 ([-0.002, 0.004, 0.009], [1.0; 3], [-0.002, 0.004, 0.0009]),
                 ([0.13, 0.149, 0.16], [0.5, 1.0, 0.0], [4e-4, -1e-4, 2e-4]),
             ] {
-                let corners = Corners { z, share, depth };
+                let corners = Corners { z, share, depth, sag: [0.0; 3] };
                 let partial = PartialLoad::Proportional;
                 let fast = integrate(&sub, array, &corners, partial, 1e-3);
                 let exact = by_centres(&sub, array, &corners, partial, 1e-3, false);
@@ -482,7 +517,7 @@ mod tests {
         for (shift, c, k) in [(0.0, 0.0, 1e6), (0.1, -1e5, 2e6)] {
             let z = z.map(|z| z + shift);
             for share in [[1.0; 3], [0.2, 1.0, 0.7], [0.0, 0.3, 0.0]] {
-                let corners = Corners { z, share, depth: z };
+                let corners = Corners { z, share, depth: z, sag: [0.0; 3] };
                 let short = integrate(&sub, array, &corners, PartialLoad::Proportional, 1e-4);
                 let long = integrate(&sub, Long(c, k), &corners, PartialLoad::Proportional, 1e-4);
                 assert!((short.pressure - long.pressure).abs() < 1e-9 * long.pressure);

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::equilibrium::{Equilibrium, Frozen, NoEquilibrium, SearchSettings, equilibrium, start_position};
 use crate::machine::Machine;
-use crate::mechanism::{Configuration, Joint};
+use crate::mechanism::Configuration;
 use crate::rolling_resistance::{WheelResistance, foot_resistance};
 use crate::route::Route;
 use crate::terrain::Terrain;
@@ -105,10 +105,9 @@ impl RunState {
         if n_points < 2 || length < run_step {
             return Err(RunError::Route { n_points, length, run_step });
         }
-        let (position, heading) = settings.route.at(0.0);
+        let (position, _) = settings.route.at(0.0);
         let height = terrain.grid().height_at(position[0], position[1]) + 1.0;
-        let mut configuration = machine.mechanism.at(position, heading, height);
-        steer(machine, &settings.route, 0.0, &mut configuration);
+        let configuration = machine.on_route(&settings.route, 0.0, height);
         let failed = |reason| RunError::NoEquilibrium { distance: 0.0, reason };
         let from =
             start_position(machine, &terrain, &configuration, 0.0, &settings.search).map_err(failed)?;
@@ -171,7 +170,7 @@ impl RunState {
     ) -> Result<usize, RunError> {
         let mut at = self.configuration.clone();
         (at.position, at.heading) = settings.route.at(distance);
-        steer(machine, &settings.route, distance, &mut at);
+        machine.steer(&settings.route, distance, &mut at);
         let failed = |reason| RunError::NoEquilibrium { distance, reason };
         let frozen = Frozen::new(machine, &self.terrain, &at, distance, settings.search.integration())
             .map_err(failed)?;
@@ -192,7 +191,7 @@ impl RunState {
     ) -> Result<Equilibrium, RunError> {
         let mut at = self.configuration.clone();
         (at.position, at.heading) = settings.route.at(distance);
-        steer(machine, &settings.route, distance, &mut at);
+        machine.steer(&settings.route, distance, &mut at);
         equilibrium(machine, &self.terrain, &at, distance, search)
             .map_err(|reason| RunError::NoEquilibrium { distance, reason })
     }
@@ -218,19 +217,6 @@ impl RunState {
             wheels,
             foot_loads: loads.iter().map(|l| l.wrench.force.z).collect(),
             n_evaluations: rest.n_evaluations,
-        }
-    }
-}
-
-/// Turns every steered joint so that its body's heading is that of the route at the body's distance behind the first one.
-fn steer(machine: &Machine, route: &Route, distance: f64, at: &mut Configuration) {
-    for (n, body) in machine.mechanism.bodies().iter().enumerate().skip(1) {
-        if let Joint::Held { axis } = body.joint
-            && axis.z.abs() > 0.5
-        {
-            let (_, heading) = route.at(distance + body.attachment.x);
-            let turn = heading - at.heading;
-            at.joints[n] = axis.z.signum() * turn.sin().atan2(turn.cos());
         }
     }
 }

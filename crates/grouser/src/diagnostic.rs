@@ -83,9 +83,14 @@ fn floor(text: &str, mut at: usize) -> usize {
     at
 }
 
-impl fmt::Display for Diagnostic {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "error: {}", self.what)?;
+impl Diagnostic {
+    /// The message as advice about an input that is taken all the same.
+    pub fn as_advice(&self) -> impl fmt::Display {
+        fmt::from_fn(|f| self.write("advice", f))
+    }
+
+    fn write(&self, head: &str, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{head}: {}", self.what)?;
         if let Some(place) = &self.place {
             let Place { file, line, column, text, length } = place;
             let margin = " ".repeat(line.to_string().len());
@@ -101,6 +106,12 @@ impl fmt::Display for Diagnostic {
             }
         }
         Ok(())
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.write("error", f)
     }
 }
 

@@ -166,8 +166,9 @@ impl Foot {
             wheel.draw(pose, travel, &mut wheels, owner as u16);
         }
         layers.push(wheels);
+        let axle = pose.rotation * Vec3::y();
         for layer in &mut layers {
-            layer.carry_edges(grid);
+            layer.carry_edges(grid, &axle);
         }
         let mut drawn = FootImprint { layers, reference: pose.translation.vector, tracks: Vec::new() };
         for track in &mut tracks {

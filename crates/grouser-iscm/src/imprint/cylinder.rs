@@ -31,8 +31,9 @@ impl Imprint {
                 }
                 let zeta = (e * a.z - discriminant.sqrt()) / flat;
                 let s = e + a.z * zeta;
+                let is_inside = s.abs() <= half + 1e-9;
                 let coverage = match self.partial {
-                    PartialLoad::Step => f64::from(u8::from(s.abs() <= half + 1e-9)),
+                    PartialLoad::Step => f64::from(u8::from(is_inside)),
                     PartialLoad::Proportional => overlap(s, cell, -half, half),
                 };
                 let height = centre.z + zeta;
@@ -42,7 +43,7 @@ impl Imprint {
                 let normal = Vec3::new(d_x, d_y, zeta) - a * s;
                 if normal.z < -1e-3 * radius {
                     let slope = [-normal.x / normal.z, -normal.y / normal.z];
-                    self.add(j * self.n_x + i, coverage, height, slope, owner);
+                    self.add(j * self.n_x + i, (coverage, is_inside), height, slope, owner);
                 }
             }
         }

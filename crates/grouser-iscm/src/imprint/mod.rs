@@ -6,7 +6,7 @@ mod cylinder;
 mod plate;
 mod surface;
 
-use grouser_geometry::HeightGrid;
+use grouser_geometry::{HeightGrid, Vec3};
 
 pub use plate::Plate;
 
@@ -23,12 +23,23 @@ pub struct ImprintNode {
     pub slope: [f64; 2],
     /// Which object of the gear lies here.
     pub owner: u16,
+    /// Whether the point itself lies within the outline of the gear.
+    pub is_inside: bool,
     /// Whether `height` is known: also just beyond the edge of the gear, where it is carried on.
     pub is_known: bool,
 }
 
-const EMPTY: ImprintNode =
-    ImprintNode { coverage: 0.0, height: f64::INFINITY, slope: [0.0; 2], owner: 0, is_known: false };
+/// Most that an underside sags between points, per distance of the points.
+pub(crate) const MOST_SAG: f64 = 0.125;
+
+const EMPTY: ImprintNode = ImprintNode {
+    coverage: 0.0,
+    height: f64::INFINITY,
+    slope: [0.0; 2],
+    owner: 0,
+    is_inside: false,
+    is_known: false,
+};
 
 /// Grid model over a window of the terrain grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +58,8 @@ pub struct Imprint {
     origin: [f64; 2],
     ceiling: f64,
     partial: PartialLoad,
+    /// Nodes at the edge of the gear, and which nodes' ground they are taken to see, with weights that add up to one.
+    pub(crate) edges: Vec<(usize, Vec<(usize, f64)>)>,
 }
 
 impl Imprint {
@@ -61,7 +74,18 @@ impl Imprint {
         let (i_0, n_x) = window(min[0], max[0], grid.origin()[0], grid.n_x());
         let (j_0, n_y) = window(min[1], max[1], grid.origin()[1], grid.n_y());
         let origin = [grid.origin()[0] + d * i_0 as f64, grid.origin()[1] + d * j_0 as f64];
-        Self { i_0, j_0, n_x, n_y, nodes: vec![EMPTY; n_x * n_y], spacing: d, origin, ceiling, partial }
+        Self {
+            i_0,
+            j_0,
+            n_x,
+            n_y,
+            nodes: vec![EMPTY; n_x * n_y],
+            spacing: d,
+            origin,
+            ceiling,
+            partial,
+            edges: Vec::new(),
+        }
     }
 
     /// Whether the gear covers no node.
@@ -73,6 +97,24 @@ impl Imprint {
     #[inline(always)]
     pub fn position(&self, i: usize, j: usize) -> [f64; 2] {
         [self.origin[0] + self.spacing * i as f64, self.origin[1] + self.spacing * j as f64]
+    }
+
+    /// By how much the underside lies below the straight lines between three nodes, at most at the middle of each: four times that \[m\].
+    ///
+    /// Along a side whose slope changes by Δs over Δr a parabola sags by Δs·Δr/8; different objects are not joined by one.
+    #[inline(always)]
+    pub(crate) fn sag(&self, [p, q, r]: [(usize, usize); 3]) -> [f64; 3] {
+        let along = |a: (usize, usize), b: (usize, usize)| {
+            let [from, to] = [a, b].map(|(i, j)| &self.nodes[j * self.n_x + i]);
+            if from.owner != to.owner || !from.is_known || !to.is_known {
+                return 0.0;
+            }
+            let way = [b.0 as f64 - a.0 as f64, b.1 as f64 - a.1 as f64];
+            let turn = [to.slope[0] - from.slope[0], to.slope[1] - from.slope[1]];
+            let most = 4.0 * MOST_SAG * self.spacing;
+            (0.5 * self.spacing * (turn[0] * way[0] + turn[1] * way[1])).clamp(-most, most)
+        };
+        [along(p, q), along(q, r), along(r, p)]
     }
 
     /// Window indices of the nodes within the box from `min` to `max` \[m\]: i and j ranges.
@@ -88,16 +130,23 @@ impl Imprint {
 
     /// Adds an object at a node: coverages add up, heights and slopes average by coverage.
     #[inline(always)]
-    fn add(&mut self, node: usize, coverage: f64, height: f64, slope: [f64; 2], owner: u16) {
+    fn add(
+        &mut self,
+        node: usize,
+        (coverage, is_inside): (f64, bool),
+        height: f64,
+        slope: [f64; 2],
+        owner: u16,
+    ) {
         let old = &mut self.nodes[node];
         if old.coverage == 0.0 {
-            *old = ImprintNode { coverage, height, slope, owner, is_known: true };
+            *old = ImprintNode { coverage, height, slope, owner, is_inside, is_known: true };
             return;
         }
         match self.partial {
             PartialLoad::Step => {
                 if height < old.height {
-                    *old = ImprintNode { coverage, height, slope, owner, is_known: true };
+                    *old = ImprintNode { coverage, height, slope, owner, is_inside, is_known: true };
                 }
             }
             PartialLoad::Proportional => {
@@ -108,6 +157,7 @@ impl Imprint {
                     height: a * old.height + b * height,
                     slope: [a * old.slope[0] + b * slope[0], a * old.slope[1] + b * slope[1]],
                     owner,
+                    is_inside: old.is_inside || is_inside,
                     is_known: true,
                 };
             }
@@ -118,7 +168,7 @@ impl Imprint {
     ///
     /// The soil under a vertical edge lies at full depth up to the edge; without this it would rise within one cell. Points that are hardly
     /// covered lie in between, and neighbours count by what is covered of them, so that no height jumps as the edge passes a point.
-    pub fn carry_edges(&mut self, ground: &HeightGrid) {
+    pub fn carry_edges(&mut self, ground: &HeightGrid, axle: &Vec3) {
         if self.partial == PartialLoad::Step {
             return;
         }
@@ -159,6 +209,7 @@ impl Imprint {
                         height: blend(own.height, at(i, j) + depth / sum),
                         slope: [0, 1].map(|k| blend(own.slope[k], slope[k] / sum)),
                         owner: if own.coverage > 0.0 { own.owner } else { largest.1 },
+                        is_inside: own.is_inside,
                         is_known: true,
                     };
                     carried.push((j * self.n_x + i, node));
@@ -168,8 +219,60 @@ impl Imprint {
         for (n, node) in carried {
             self.nodes[n] = node;
         }
+        self.find_edges(axle);
+    }
+
+    /// Where the gear's edge runs between points, those that footprints leave out stay as high as the ground beside the rut: a gear
+    /// that left them behind would still press there. They see the ground of their neighbours within the gear instead.
+    fn find_edges(&mut self, axle: &Vec3) {
+        let sideways = nalgebra::Vector2::new(axle.x, axle.y).normalize();
+        let within = |i: usize, j: usize| {
+            if i < self.n_x && j < self.n_y { within(self.nodes[j * self.n_x + i].coverage) } else { 0.0 }
+        };
+        let mut edges = Vec::new();
+        for j in 0..self.n_y {
+            for i in 0..self.n_x {
+                let n = j * self.n_x + i;
+                let own = &self.nodes[n];
+                if !own.is_known || own.coverage >= 1.0 {
+                    continue;
+                }
+                let trusted = within(i, j);
+                let near = AROUND.map(|(di, dj)| {
+                    let (a, b) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
+                    // Ruts have their walls beside the wheel.
+                    let beside = (di as f64 * sideways.x + dj as f64 * sideways.y).powi(2)
+                        / (di * di + dj * dj) as f64;
+                    (a, b, within(a, b) * beside)
+                });
+                // Those along the axes come first, then those across the corners, then the point itself.
+                let left = (1.0 - near[..4].iter().map(|n| n.2).sum::<f64>()).max(0.0);
+                let mut seen = vec![(n, trusted + BARELY * left)];
+                for (k, &(a, b, weight)) in near.iter().enumerate() {
+                    let weight = (1.0 - trusted) * weight * if k < 4 { 1.0 } else { ACROSS * left };
+                    if weight > 0.0 {
+                        seen.push((b * self.n_x + a, weight));
+                    }
+                }
+                if seen.len() > 1 {
+                    let sum: f64 = seen.iter().map(|s| s.1).sum();
+                    seen.iter_mut().for_each(|s| s.1 /= sum);
+                    edges.push((n, seen));
+                }
+            }
+        }
+        self.edges = edges;
     }
 }
+
+/// How far the ground at a point counts as the ground under the gear: footprints take points within its outline, of whose cells it
+/// covers half or more. A ramp, so that nothing jumps as an edge passes a point.
+fn within(coverage: f64) -> f64 {
+    (50.0 * coverage - 24.0).clamp(0.0, 1.0)
+}
+
+/// Weight of a point's own ground beside a neighbour within the gear.
+const BARELY: f64 = 0.02;
 
 /// Share of a cell below which the height of the gear there is partly carried on from its neighbours.
 const HARDLY_COVERED: f64 = 0.25;
@@ -182,7 +285,7 @@ const AROUND: [(isize, isize); 8] = [(-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1),
 ///
 /// With it, rows of points cover a strip by its exact width along the axes and across, and nearly so in between.
 #[inline(always)]
-fn cell_width(direction: &grouser_geometry::Vec3) -> f64 {
+fn cell_width(direction: &Vec3) -> f64 {
     let horizontal = direction.x.hypot(direction.y);
     (direction.x.abs() + direction.y.abs()) / (horizontal * horizontal).max(1e-12)
 }

@@ -63,18 +63,17 @@ impl Imprint {
                 let rise = slope[0] * (x - o.x) + slope[1] * (y - o.y);
                 let p = Vec3::new(x - o.x, y - o.y, rise);
                 let (u, v) = (p.dot(&e_x), p.dot(&e_y));
+                let inside = |t: f64, range: [f64; 2]| t >= range[0] - 1e-9 && t <= range[1] + 1e-9;
+                let is_inside = inside(u, plate.along) && inside(v, plate.across);
                 let coverage = match self.partial {
-                    PartialLoad::Step => {
-                        let inside = |t: f64, range: [f64; 2]| t >= range[0] - 1e-9 && t <= range[1] + 1e-9;
-                        f64::from(u8::from(inside(u, plate.along) && inside(v, plate.across)))
-                    }
+                    PartialLoad::Step => f64::from(u8::from(is_inside)),
                     PartialLoad::Proportional => {
                         overlap(u, cell_x, plate.along[0], plate.along[1])
                             * overlap(v, cell_y, plate.across[0], plate.across[1])
                     }
                 };
                 if coverage > 0.0 && o.z + rise <= self.ceiling {
-                    self.add(j * self.n_x + i, coverage, o.z + rise, slope, owner);
+                    self.add(j * self.n_x + i, (coverage, is_inside), o.z + rise, slope, owner);
                 }
             }
         }

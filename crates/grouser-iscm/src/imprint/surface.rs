@@ -77,7 +77,8 @@ impl Imprint {
                     } else {
                         (height / hits, [slope[0] / hits, slope[1] / hits])
                     };
-                    self.add(j * self.n_x + i, hits / (k * k) as f64, height, slope, owner);
+                    let covered = (hits / (k * k) as f64, middle.0.is_finite());
+                    self.add(j * self.n_x + i, covered, height, slope, owner);
                 }
             }
         }

@@ -82,7 +82,7 @@ pub fn drive_direction() -> Vec<Row> {
         "largest deviation in 16 headings",
         largest,
         0.0,
-        1e-4,
+        1e-5,
         "rad",
         "heading of the route",
     )]

@@ -98,7 +98,10 @@ impl Scene {
             };
             sets.push((path.trim().to_owned(), value.trim().to_owned()));
         }
-        scene::read(&name, &text, self.quick, &sets).map_err(|messages| report(&messages))
+        let (scenario, advice) =
+            scene::read_with_advice(&name, &text, self.quick, &sets).map_err(|messages| report(&messages))?;
+        advice.iter().for_each(|message| eprintln!("{}\n", message.as_advice()));
+        Ok(scenario)
     }
 
     /// Where results go when nobody says: `out/<name of the scene>`.

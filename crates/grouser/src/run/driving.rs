@@ -155,11 +155,10 @@ pub fn estimate(scenario: &Scenario) -> Estimate {
     let Some(parts) = parts(scenario) else { return Estimate::default() };
     let drives = Drive::all(&parts);
     let n_steps: usize = drives.iter().map(|drive| (parts.route.length() / drive.run_step) as usize).sum();
-    let mut lines = vec![
+    let lines = vec![
         ("drives", drives.len().to_string()),
         ("run steps", format!("{n_steps}, each with {} intermediate ones", parts.route.intermediate_steps)),
     ];
-    lines.extend(parts.route.settings().search.advice().map(|advice| ("advice", advice)));
     Estimate { lines, wall: None }
 }
 
@@ -176,7 +175,10 @@ impl Driving {
     /// Machine and settings of the present drive, made anew when the run was taken up from a checkpoint.
     fn build(&mut self, parts: &Parts, drive: &Drive) -> Result<(), RunError> {
         if self.built.is_none() {
-            let machine = parts.vehicle.machine(&drive.equipment).map_err(SetupError::Vehicle)?;
+            let machine = parts
+                .vehicle
+                .machine(&drive.equipment)
+                .map_err(|(path, message)| SetupError::Vehicle(format!("tool.{path}: {message}")))?;
             self.built = Some(Built { machine, settings: drive.settings(parts.route) });
         }
         Ok(())

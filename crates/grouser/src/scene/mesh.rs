@@ -5,7 +5,7 @@ use grouser_geometry::mesh_doctor::{Closedness, examine};
 use grouser_geometry::{TriangleSurface, Vec3, obj, stl};
 use serde::{Deserialize, Serialize};
 use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A rigid body with a surface of triangles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,14 +25,6 @@ fn metres() -> f64 {
 }
 
 impl Mesh {
-    /// Takes the file beside the scenario, where there is one; its path then counts from the current folder.
-    pub fn find_beside(&mut self, scenario: &str) {
-        let beside: PathBuf = Path::new(scenario).parent().unwrap_or(Path::new("")).join(&self.file);
-        if beside.is_file() {
-            self.file = beside.display().to_string();
-        }
-    }
-
     /// The surface, the middle of its outline on the vertical axis and its lowest point at z = 0 [m].
     ///
     /// # Errors

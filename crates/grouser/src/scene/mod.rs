@@ -4,6 +4,7 @@
 
 mod collapse;
 mod dials;
+mod height_file;
 mod locate;
 mod material;
 mod mesh;
@@ -14,6 +15,7 @@ mod read;
 mod reference;
 mod rigid_wheel;
 mod route;
+mod shoe;
 mod soft_ground;
 mod soil;
 mod source;
@@ -27,23 +29,25 @@ pub use collapse::Collapse;
 pub use dials::{
     ActiveZone, Dials, Dlr, Figures, Forces, Precision, RestitutionTail, Rolling, Rotation, Tilting,
 };
+pub use height_file::{HeightFile, ImageScale};
 pub use locate::{Found, Path, locate};
 pub use material::{Material, Pair};
 pub use mesh::Mesh;
 pub use motion::{Motion, Press};
 pub use outputs::Outputs;
 pub use plate_tested::{ContactSize, PlateTested};
-pub use read::{dialect, read, resolved, variant};
+pub use read::{dialect, read, read_with_advice, resolved, variant};
 pub use reference::{PlateCurve, PressureSinkage, Reference, WheelMeasured, WheelPoint};
 pub use rigid_wheel::{RigidWheel, SlipPoint, Slips};
 pub use route::{Route, Vary};
-pub use soft_ground::{GroundProblem, Pressure, Relief, RigidObject, SoftGround};
+pub use shoe::{BeltShoe, FileAxis, PlateShoe, ShoeFile};
+pub use soft_ground::{GroundProblem, MeasuredLaws, Pressure, Relief, RigidObject, SoftGround};
 pub use soil::{Container, Grains, Layer, Settle, Side, Sizes, Soil};
 pub use source::Source;
 pub use study::{Axis, Choice, Curves, Study, Trend, Variant};
 pub use tire::{Roll, SubSteps, Tire, TireElements, TireModel, Tread, Vertical};
 pub use tool::{Plates, Tool};
-pub use validate::{Problem, validate};
+pub use validate::{Problem, advice, validate};
 pub use vehicle::{AxlePair, BeltSet, Frame, FrameJoint, Load, Vehicle};
 
 use ron::value::RawValue;
@@ -96,4 +100,26 @@ pub struct Scenario {
 
 fn standard_gravity() -> [f64; 3] {
     [0.0, 0.0, -9.81]
+}
+
+/// Takes a file beside the scenario, where there is one; its path then counts from the current folder.
+fn beside(scenario: &str, file: &mut String) {
+    let beside = std::path::Path::new(scenario).parent().unwrap_or(std::path::Path::new("")).join(&*file);
+    if beside.is_file() {
+        *file = beside.display().to_string();
+    }
+}
+
+impl Scenario {
+    /// Takes files beside the scenario, where there are any.
+    fn find_beside(&mut self, scenario: &str) {
+        if let Soil::PressureSinkage(ground) = &mut self.soil {
+            ground.find_beside(scenario);
+        }
+        match &mut self.tool {
+            Some(Tool::Mesh(mesh)) => beside(scenario, &mut mesh.file),
+            Some(Tool::Vehicle(vehicle)) => vehicle.find_beside(scenario),
+            _ => {}
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! From text to a checked scenario, and back with every default written out.
 
-use super::{Pair, Scenario, Source, Study, Tool, Variant, validate};
+use super::{Pair, Problem, Scenario, Source, Study, Tool, Variant, advice, validate};
 use crate::diagnostic::Diagnostic;
 use ron::error::{Error, SpannedError};
 use ron::extensions::Extensions;
@@ -22,6 +22,19 @@ pub fn read(
     is_quick: bool,
     sets: &[(String, String)],
 ) -> Result<Scenario, Vec<Diagnostic>> {
+    read_with_advice(name, text, is_quick, sets).map(|(scenario, _)| scenario)
+}
+
+/// The same, with advice about what is legal but unwise.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_with_advice(
+    name: &str,
+    text: &str,
+    is_quick: bool,
+    sets: &[(String, String)],
+) -> Result<(Scenario, Vec<Diagnostic>), Vec<Diagnostic>> {
     let mut source = Source::new(name, text);
     let mut scenario = parse(&source).map_err(|error| vec![error]);
     // What the file alone gets wrong is reported before overrides hide it; `quick` needs it anyway.
@@ -39,23 +52,25 @@ pub fn read(
     }
     let mut scenario = scenario?;
     complete_pairs(&mut scenario);
-    if let Some(Tool::Mesh(mesh)) = &mut scenario.tool {
-        mesh.find_beside(name);
-        if let Err(message) = mesh.surface() {
-            return Err(vec![Diagnostic { place: source.place_of("tool.file"), ..message }]);
-        }
+    scenario.find_beside(name);
+    if let Some(Tool::Mesh(mesh)) = &scenario.tool
+        && let Err(message) = mesh.surface()
+    {
+        return Err(vec![Diagnostic { place: source.place_of("tool.file"), ..message }]);
     }
+    let placed = |problem: Problem| Diagnostic { place: source.place_of(&problem.path), ..problem.into() };
     let problems = validate(&scenario);
     if problems.is_empty() {
         let variants = scenario.study.iter().flat_map(Study::variants);
         let refused = variants.filter_map(|each| variant(&scenario, &each).err()).flatten();
         let messages: Vec<Diagnostic> = refused.collect();
-        return if messages.is_empty() { Ok(scenario) } else { Err(messages) };
+        if !messages.is_empty() {
+            return Err(messages);
+        }
+        let advice = advice(&scenario).into_iter().map(placed).collect();
+        return Ok((scenario, advice));
     }
-    Err(problems
-        .into_iter()
-        .map(|problem| Diagnostic { place: source.place_of(&problem.path), ..problem.into() })
-        .collect())
+    Err(problems.into_iter().map(placed).collect())
 }
 
 /// The scenario as a text with every default written out. Reading it gives the same scenario, and writing that

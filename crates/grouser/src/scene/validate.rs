@@ -123,6 +123,14 @@ pub fn validate(scenario: &Scenario) -> Vec<Problem> {
     check.problems
 }
 
+/// What is legal but unwise.
+pub fn advice(scenario: &Scenario) -> Vec<Problem> {
+    match &scenario.motion {
+        Some(Motion::Route(route)) => drive::advice(route).into_iter().collect(),
+        _ => Vec::new(),
+    }
+}
+
 fn materials(check: &mut Check, scenario: &Scenario) {
     for (axis, value) in scenario.gravity_m_s2.iter().enumerate() {
         check.finite(&format!("gravity_m_s2[{axis}]"), *value);
@@ -203,6 +211,12 @@ impl Check {
             usual_cause: usual_cause.to_owned(),
             remedy,
         });
+    }
+
+    /// A problem that was found and described elsewhere.
+    fn found(&mut self, path: &str, message: Diagnostic) {
+        let Diagnostic { what, expected, usual_cause, remedy, .. } = message;
+        self.problems.push(Problem { path: path.to_owned(), what, expected, usual_cause, remedy });
     }
 
     fn fail(&mut self, path: &str, what: &str, expected: &str, usual_cause: &str) {

@@ -1,8 +1,9 @@
 //! A vehicle of frames joined in a line, on wheels, bogies, chains and tracks.
 
+use super::BeltShoe;
+use crate::diagnostic::Diagnostic;
 use grouser_geometry::Vec3;
-use grouser_iscm::gear::{Belt, Fit, Hull, Shoe, ShoeShape, WheelShape};
-use grouser_iscm::imprint::Plate;
+use grouser_iscm::gear::{Belt, Fit, Hull, Shoe, WheelShape};
 use grouser_iscm::machine::Machine;
 use grouser_iscm::track::tight_pitch;
 use grouser_iscm::vehicle::{Articulation, Axle, Component, vehicle};
@@ -91,18 +92,8 @@ pub struct BeltSet {
     pub n_shoes: usize,
     /// Mass of a shoe [kg].
     pub shoe_mass_kg: f64,
-    /// Width of a shoe [m].
-    pub shoe_width_m: f64,
-    /// Length of a shoe's plate per pitch [-]: below 1 the wheel shows between the shoes.
-    pub plate_share: f64,
-    /// Depth of the plate's underside outside the wheel [m].
-    pub plate_depth_m: f64,
-    /// Length of the grouser along the track [m]; zero for none.
-    #[serde(default)]
-    pub grouser_length_m: f64,
-    /// Depth of the grouser's edge outside the wheel [m].
-    #[serde(default)]
-    pub grouser_depth_m: f64,
+    /// Its shape.
+    pub shoe: BeltShoe,
     /// By which share the links are longer than when they lie tight [-]: it then hangs above and gives way to the ground below; none for
     /// a belt that is as stiff between its wheels as they are.
     #[serde(default)]
@@ -137,9 +128,17 @@ impl Vehicle {
     /// The machine with a set of chains and tracks on.
     ///
     /// # Errors
-    /// What is wrong with a part, in words.
-    pub fn machine(&self, equipment: &str) -> Result<Machine, String> {
-        let components: Vec<Component> = self.frames.iter().map(|frame| frame.component(equipment)).collect();
+    /// The path below the vehicle of a part that is wrong, and what is wrong with it.
+    pub fn machine(&self, equipment: &str) -> Result<Machine, (String, Diagnostic)> {
+        let components: Vec<Component> = self
+            .frames
+            .iter()
+            .enumerate()
+            .map(|(n, frame)| {
+                let below = |(path, message)| (format!("frames[{n}].{path}"), message);
+                frame.component(equipment).map_err(below)
+            })
+            .collect::<Result<_, _>>()?;
         let joint = |joint: &FrameJoint| Articulation {
             position: Vec3::from(joint.position_m),
             offset: joint.offset_m,
@@ -147,29 +146,45 @@ impl Vehicle {
             is_steered: joint.is_steered,
         };
         let joints: Vec<Articulation> = self.joints.iter().map(joint).collect();
-        vehicle(&components, &joints).map_err(|error| error.to_string())
+        vehicle(&components, &joints).map_err(|error| {
+            let message = Diagnostic::new(format!("with \"{equipment}\": {error}"))
+                .expected("a machine that can stand")
+                .usual_cause("a part left out, or a value in another unit");
+            (String::new(), message)
+        })
+    }
+
+    /// Takes the files of shoes beside the scenario, where there are any.
+    pub fn find_beside(&mut self, scenario: &str) {
+        let axles = self.frames.iter_mut().flat_map(|frame| &mut frame.axles);
+        axles.flat_map(|axle| &mut axle.belts).for_each(|belt| belt.shoe.find_beside(scenario));
     }
 }
 
 impl Frame {
-    fn component(&self, equipment: &str) -> Component {
+    fn component(&self, equipment: &str) -> Result<Component, (String, Diagnostic)> {
         let own = Vec3::from(self.centre_of_mass_m) * self.mass_kg;
         let (mass, moment) = match &self.load {
             None => (self.mass_kg, own),
             Some(load) => (self.mass_kg + load.mass_kg, own + Vec3::from(load.centre_m) * load.mass_kg),
         };
         let centre_of_mass = if mass > 0.0 { moment / mass } else { Vec3::zeros() };
-        let axles = self.axles.iter().map(|axle| axle.with(equipment)).collect();
-        Component { name: self.name.clone(), mass, centre_of_mass, axles }
+        let with = |(n, axle): (usize, &AxlePair)| {
+            axle.with(equipment).map_err(|(path, message)| (format!("axles[{n}].{path}"), message))
+        };
+        let axles = self.axles.iter().enumerate().map(with).collect::<Result<_, _>>()?;
+        Ok(Component { name: self.name.clone(), mass, centre_of_mass, axles })
     }
 }
 
 impl AxlePair {
-    fn with(&self, equipment: &str) -> Axle {
-        let on = self.belts.iter().filter(|belt| belt.equipment == equipment);
-        let belts: Vec<Belt> = on.map(|belt| belt.belt(self)).collect();
+    fn with(&self, equipment: &str) -> Result<Axle, (String, Diagnostic)> {
+        let on = self.belts.iter().enumerate().filter(|(_, belt)| belt.equipment == equipment);
+        let belts: Vec<Belt> = on
+            .map(|(n, belt)| belt.belt(self).map_err(|message| (format!("belts[{n}].shoe.file"), message)))
+            .collect::<Result<_, _>>()?;
         let belt_mass: f64 = belts.iter().map(|belt| belt.n_shoes as f64 * belt.shoe.mass).sum();
-        Axle {
+        Ok(Axle {
             along: self.along_m,
             height: self.height_m,
             half_track: self.half_track_m,
@@ -179,12 +194,12 @@ impl AxlePair {
             radius: self.wheel_radius_m,
             shape: WheelShape::Cylinder { width: self.wheel_width_m },
             belts,
-        }
+        })
     }
 }
 
 impl BeltSet {
-    fn belt(&self, axle: &AxlePair) -> Belt {
+    fn belt(&self, axle: &AxlePair) -> Result<Belt, Diagnostic> {
         let centre = |&wheel: &usize| match (axle.lever_m > 0.0, wheel) {
             (false, _) => 0.0,
             (true, 0) => -axle.lever_m,
@@ -196,17 +211,7 @@ impl BeltSet {
             None => (Hull::around(&circles).length() / self.n_shoes.max(1) as f64, Fit::Tight),
             Some(slack) => (tight_pitch(&circles, self.n_shoes) * (1.0 + slack), Fit::Slack),
         };
-        let half_width = self.shoe_width_m / 2.0;
-        let plate =
-            |half: f64, depth| Plate { along: [-half, half], across: [-half_width, half_width], depth };
-        let grousers = if self.grouser_length_m > 0.0 {
-            vec![plate(self.grouser_length_m / 2.0, self.grouser_depth_m)]
-        } else {
-            Vec::new()
-        };
-        let plates = vec![plate(self.plate_share * pitch / 2.0, self.plate_depth_m)];
-        let shape = ShoeShape::Steel { plates, grousers };
-        let shoe = Shoe { mass: self.shoe_mass_kg, shape };
-        Belt { wheels: self.wheels.clone(), link_offset: 0.0, n_shoes: self.n_shoes, pitch, shoe, fit }
+        let shoe = Shoe { mass: self.shoe_mass_kg, shape: self.shoe.shape(pitch)? };
+        Ok(Belt { wheels: self.wheels.clone(), link_offset: 0.0, n_shoes: self.n_shoes, pitch, shoe, fit })
     }
 }

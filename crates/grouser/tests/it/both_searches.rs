@@ -66,3 +66,8 @@ fn both_searches_rest_at_the_same_place_on_the_stump() {
 fn both_searches_rest_at_the_same_place_on_spatial_soil() {
     compare("spatial_soil.ron", 0.5);
 }
+
+#[test]
+fn both_searches_rest_at_the_same_place_on_the_ground_of_the_convergence_study() {
+    compare("iscm_convergence.ron", 2.1);
+}

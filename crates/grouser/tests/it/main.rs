@@ -8,6 +8,7 @@ mod repose;
 mod slips;
 mod study;
 mod vehicle;
+mod vehicle_files;
 
 use std::path::Path;
 use std::process::{Command, Output};

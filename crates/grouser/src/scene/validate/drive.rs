@@ -1,6 +1,6 @@
 //! Checks of vehicles driven over soft ground.
 
-use super::Check;
+use super::{Check, Problem};
 use crate::scene::{Route, SoftGround, Vehicle};
 
 pub fn validate(check: &mut Check, ground: &SoftGround, vehicle: &Vehicle, route: &Route) {
@@ -14,14 +14,9 @@ pub fn validate(check: &mut Check, ground: &SoftGround, vehicle: &Vehicle, route
         );
     }
     for equipment in &vehicle.equipment {
-        if let Err(error) = vehicle.machine(equipment) {
-            check.push(
-                "tool",
-                format!("with \"{equipment}\": {error}"),
-                "a machine that can stand",
-                "a part left out, or a value in another unit",
-                String::new(),
-            );
+        if let Err((path, message)) = vehicle.machine(equipment) {
+            let path = if path.is_empty() { "tool".to_owned() } else { format!("tool.{path}") };
+            check.found(&path, message);
             break;
         }
     }
@@ -40,7 +35,18 @@ pub fn validate(check: &mut Check, ground: &SoftGround, vehicle: &Vehicle, route
             }
         }
     }
-    way(check, ground, route);
+    way(check, ground, vehicle, route);
+}
+
+/// An odd number of parts, which the step function of the source does not integrate exactly.
+pub fn advice(route: &Route) -> Option<Problem> {
+    route.settings().search.advice().map(|what| Problem {
+        path: "motion.integration_resolution".into(),
+        what,
+        expected: "an even number of parts per side; 4 is converged".into(),
+        usual_cause: "a resolution that was raised by one".into(),
+        remedy: format!("integration_resolution: {}", route.integration_resolution + 1),
+    })
 }
 
 /// The ground alone.
@@ -58,19 +64,13 @@ pub fn terrain(check: &mut Check, ground: &SoftGround) {
         "millimetres where metres are asked",
     );
     if check.problems.is_empty()
-        && let Err((path, error)) = ground.terrain(ground.relief.spacing_m)
+        && let Err((path, message)) = ground.terrain(ground.relief.spacing_m)
     {
-        check.push(
-            &format!("soil.{path}"),
-            error,
-            "ground that can be made",
-            "a value in another unit, or two parts at one place",
-            String::new(),
-        );
+        check.found(&format!("soil.{path}"), message);
     }
 }
 
-fn way(check: &mut Check, ground: &SoftGround, route: &Route) {
+fn way(check: &mut Check, ground: &SoftGround, vehicle: &Vehicle, route: &Route) {
     check.positive("motion.run_step_m", route.run_step_m, "a distance [m]");
     check.positive("motion.position_tolerance_m", route.position_tolerance_m, "a distance [m]");
     check.positive("motion.rut_window_m", route.rut_window_m, "a length [m]");
@@ -99,16 +99,41 @@ fn way(check: &mut Check, ground: &SoftGround, route: &Route) {
             "a point left out",
         );
     }
+    if check.problems.is_empty() {
+        on_the_terrain(check, ground, vehicle, route);
+    }
+}
+
+/// Every wheel must stand on the terrain wherever the machine goes: it reaches behind and beside the route.
+fn on_the_terrain(check: &mut Check, ground: &SoftGround, vehicle: &Vehicle, route: &Route) {
+    let Some(Ok(machine)) = vehicle.equipment.first().map(|equipment| vehicle.machine(equipment)) else {
+        return;
+    };
+    let way = route.way();
     let [corner, size] = [ground.relief.corner_m, ground.relief.size_m];
-    for (n, point) in route.points_m.iter().enumerate() {
-        for k in 0..2 {
-            check.require(
-                &format!("motion.points_m[{n}][{k}]"),
-                point[k],
-                point[k] >= corner[k] && point[k] <= corner[k] + size[k],
-                &format!("on the terrain, {} to {} m", corner[k], corner[k] + size[k]),
-                "a longer route than the ground; remedy: larger soil.relief.size_m",
-            );
+    let n_places = (route.length() / 0.1).ceil() as usize;
+    for n in 0..=n_places {
+        let distance = route.length() * n as f64 / n_places.max(1) as f64;
+        let poses = machine.mechanism.poses(&machine.on_route(&way, distance, 0.0));
+        let centres = machine.feet.iter().flat_map(|foot| {
+            foot.wheels.iter().map(|wheel| poses[foot.body].transform_point(&wheel.centre.into()))
+        });
+        for p in centres {
+            let is_on = (0..2).all(|k| p[k] >= corner[k] && p[k] <= corner[k] + size[k]);
+            if !is_on {
+                let far = [corner[0] + size[0], corner[1] + size[1]];
+                check.push(
+                    "motion.points_m",
+                    format!(
+                        "the route leads off the terrain: after {distance:.2} m a wheel stands at ({:.2}, {:.2}) m",
+                        p.x, p.y
+                    ),
+                    &format!("all wheels within x {} to {} m, y {} to {} m", corner[0], far[0], corner[1], far[1]),
+                    "a route longer than the ground, or one that begins closer to its edge than the machine is long",
+                    "a larger soil.relief.size_m, or corner_m further back; or a shorter route".into(),
+                );
+                return;
+            }
         }
     }
 }
