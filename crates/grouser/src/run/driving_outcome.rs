@@ -182,7 +182,6 @@ fn box_charts(drives: &[Evaluated]) -> Vec<(String, Chart)> {
             let mut boxes = Vec::new();
             for (x, drive) in &members {
                 boxes.extend(box_plot(*x, half, &values(drive)));
-                boxes.push((f64::NAN, f64::NAN));
             }
             let medians = members.iter().map(|(x, drive)| (*x, quantile(&values(drive), 0.5))).collect();
             let mut series: Vec<Series> = boxes
@@ -209,33 +208,24 @@ fn box_charts(drives: &[Evaluated]) -> Vec<(String, Chart)> {
     charts
 }
 
-/// The outline of a box with its median and whiskers, drawn without lifting the pen.
+/// A box with its median and whiskers: strokes, each followed by a point that is no number.
 fn box_plot(x: f64, half: f64, values: &[f64]) -> Vec<(f64, f64)> {
     let [first, median, third] = [0.25, 0.5, 0.75].map(|share| quantile(values, share));
     let reach = 1.5 * (third - first);
     let inside = values.iter().copied().filter(|v| (first - reach..=third + reach).contains(v));
     let (low, high) = inside.fold((first, third), |(l, h), v| (l.min(v), h.max(v)));
     let (a, b) = (x - half, x + half);
-    vec![
-        (a, low),
-        (b, low),
-        (x, low),
-        (x, first),
-        (a, first),
-        (a, median),
-        (b, median),
-        (a, median),
-        (a, third),
-        (x, third),
-        (x, high),
-        (a, high),
-        (b, high),
-        (x, high),
-        (x, third),
-        (b, third),
-        (b, first),
-        (x, first),
-    ]
+    let across = |y: f64| vec![(a, y), (b, y)];
+    let sides = vec![(a, first), (b, first), (b, third), (a, third), (a, first)];
+    let strokes = [
+        across(low),
+        vec![(x, low), (x, first)],
+        sides,
+        across(median),
+        vec![(x, third), (x, high)],
+        across(high),
+    ];
+    strokes.into_iter().flat_map(|stroke| stroke.into_iter().chain([(f64::NAN, f64::NAN)])).collect()
 }
 
 #[cfg(test)]
