@@ -130,8 +130,10 @@ impl<T: Real, A: Blocked<T>, B: Blocked<T>> Blocked<T> for (A, B) {
     }
     #[inline(always)]
     fn store_four(four: [Self; 4], block: &mut Self::Block, k: usize) {
-        A::store_four(four.map(|both| both.0), &mut block.0, k);
-        B::store_four(four.map(|both| both.1), &mut block.1, k);
+        // Written out here and below: closures over arrays are not inlined into a pass for wider vectors.
+        let [a, b, c, d] = four;
+        A::store_four([a.0, b.0, c.0, d.0], &mut block.0, k);
+        B::store_four([a.1, b.1, c.1, d.1], &mut block.1, k);
     }
     #[inline(always)]
     fn load(block: &Self::Block, k: usize) -> Self {
@@ -198,9 +200,10 @@ impl<T: Real> Blocked<T> for Vector<T> {
     }
     #[inline(always)]
     fn store_four(four: [Self; 4], block: &mut Self::Block, k: usize) {
-        block[0].0[k..k + 4].copy_from_slice(&four.map(|memory| memory.x));
-        block[1].0[k..k + 4].copy_from_slice(&four.map(|memory| memory.y));
-        block[2].0[k..k + 4].copy_from_slice(&four.map(|memory| memory.z));
+        let [a, b, c, d] = four;
+        block[0].0[k..k + 4].copy_from_slice(&[a.x, b.x, c.x, d.x]);
+        block[1].0[k..k + 4].copy_from_slice(&[a.y, b.y, c.y, d.y]);
+        block[2].0[k..k + 4].copy_from_slice(&[a.z, b.z, c.z, d.z]);
     }
     #[inline(always)]
     fn load(block: &Self::Block, k: usize) -> Self {

@@ -142,9 +142,34 @@ impl<T: Real> Motion<T> {
         if self.stages == Stages::None {
             return Pace::STILL;
         }
-        let orientations = grains.orientations(range.clone());
+        let mut orientations = grains.orientations(range.clone());
         let (spheres, loads, accelerations) = grains.range(range);
         let mut watch = Watch::default();
+        #[cfg(target_arch = "x86_64")]
+        if set != InstructionSet::Baseline && self.is_verlet() && self.turning.is_spherical() {
+            let advanced = in_quads!(P, Q => {
+                let advance = match (orientations.is_some(), self.rotation) {
+                    (false, Rotation::Free) => quads::advance::<Q, false, false>,
+                    (false, Rotation::Fixed) => quads::advance::<Q, false, true>,
+                    (true, Rotation::Free) => quads::advance::<Q, true, false>,
+                    (true, Rotation::Fixed) => quads::advance::<Q, true, true>,
+                };
+                // SAFETY: `Q` is `P`, so that these are the same types; `detect` found AVX2 on this machine.
+                unsafe {
+                    advance(
+                        &*(&raw const *self).cast(),
+                        &mut *(&raw mut *spheres as *mut [Sphere<Q>]),
+                        &mut *(&raw mut *loads as *mut [Load<<Q as Precision>::Real>]),
+                        &mut *(&raw mut *accelerations as *mut [[Vector<<Q as Precision>::Real>; 2]]),
+                        orientations.as_deref_mut().unwrap_or_default(),
+                        &mut *(&raw mut watch).cast(),
+                    );
+                }
+            });
+            if advanced.is_some() {
+                return watch.pace();
+            }
+        }
         if let Some(orientations) = orientations {
             for (index, orientation) in orientations.iter_mut().enumerate() {
                 let (sphere, load, acceleration) =
@@ -153,24 +178,6 @@ impl<T: Real> Motion<T> {
                 self.predict_turned(sphere, load, acceleration, orientation, &mut watch);
             }
             return watch.pace();
-        }
-        #[cfg(target_arch = "x86_64")]
-        if set != InstructionSet::Baseline && self.rotation == Rotation::Free && self.is_verlet() {
-            let advanced = in_quads!(P, Q => {
-                // SAFETY: `Q` is `P`, so that these are the same types; `detect` found AVX2 on this machine.
-                unsafe {
-                    quads::advance::<Q>(
-                        &*(&raw const *self).cast(),
-                        &mut *(&raw mut *spheres as *mut [Sphere<Q>]),
-                        &mut *(&raw mut *loads as *mut [Load<<Q as Precision>::Real>]),
-                        &mut *(&raw mut *accelerations as *mut [[Vector<<Q as Precision>::Real>; 2]]),
-                        &mut *(&raw mut watch).cast(),
-                    );
-                }
-            });
-            if advanced.is_some() {
-                return watch.pace();
-            }
         }
         for ((sphere, load), acceleration) in spheres.iter_mut().zip(loads).zip(accelerations) {
             self.correct(sphere, load, acceleration);

@@ -26,6 +26,16 @@ impl Turning {
         Self { ratios: ratios.into(), is_spherical: ratios[0] == ratios[1] && ratios[1] == ratios[2] }
     }
 
+    /// m r² over the moment of inertia, which is the same about every axis.
+    pub fn inverse_ratio(&self) -> f64 {
+        1.0 / self.ratios.x
+    }
+
+    /// The inertia is that of a sphere of whatever density.
+    pub fn is_spherical(&self) -> bool {
+        self.is_spherical
+    }
+
     /// Angular velocity of the angular momentum over m r², both in the world frame.
     fn spin(&self, momentum: Vec3, orientation: &Orientation) -> Vec3 {
         let body = orientation.inverse_transform_vector(&momentum);
@@ -59,7 +69,7 @@ impl<T: Real> Motion<T> {
             return;
         }
         let change = if self.turning.is_spherical {
-            let after = load.torque * (inverse * T::from_f64(1.0 / self.turning.ratios.x));
+            let after = load.torque * (inverse * T::from_f64(self.turning.inverse_ratio()));
             let change = after - *angular;
             *angular = after;
             change
@@ -132,7 +142,7 @@ impl<T: Real> Motion<T> {
 
 /// q ← (1, ½ω Δt) q, of unit length again.
 #[inline(always)]
-fn turn(orientation: &mut Orientation, spin: Vec3, time_step: f64) {
+pub(crate) fn turn(orientation: &mut Orientation, spin: Vec3, time_step: f64) {
     let turn = Quaternion::from_parts(1.0, spin * (0.5 * time_step));
     let turned = turn * orientation.quaternion();
     *orientation = Orientation::new_unchecked(turned * (1.0 / turned.norm_squared().sqrt()));

@@ -141,7 +141,8 @@ pub struct TiltingSettings {
     /// Impact times π √(m*/k) over which the torque of a normal force builds up [-], in [0, 100]; 0 is P1's law at every instant.
     /// Read by [`crate::Tilting`].
     pub build_up: f64,
-    /// Dashpot on the lift over that of the normal force [-], in [0, 4]; 0 is P1's law. Read by [`crate::Tilting`].
+    /// Dashpot on the lift over that of the normal force [-], in [0, 4]; 0 is P1's law. It calms beds under a plate and slows a
+    /// grain that topples under its own weight. Read by [`crate::Tilting`].
     pub lift_damping: f64,
 }
 
@@ -151,7 +152,8 @@ const DEFAULT_SMOOTHING: f64 = 5e-3;
 const DEFAULT_BUILD_UP: f64 = 10.0;
 
 impl TiltingSettings {
-    /// Inscribed arms and inertia, a passage between corners within 0.005 rad (0.29°), torques built up over ten impact times.
+    /// Inscribed arms and inertia, a passage between corners within 0.005 rad (0.29°), torques built up over ten impact times, no dashpot on
+    /// the lift.
     pub fn of(shape: GrainShape) -> Self {
         Self {
             shape,
@@ -159,7 +161,7 @@ impl TiltingSettings {
             inertia: GrainInertia::Inscribed,
             smoothing_rad: DEFAULT_SMOOTHING,
             build_up: DEFAULT_BUILD_UP,
-            lift_damping: 1.0,
+            lift_damping: 0.0,
         }
     }
 

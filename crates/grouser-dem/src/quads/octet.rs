@@ -26,6 +26,9 @@ pub(crate) trait Octet: Copy {
     unsafe fn minus(self, other: Self) -> Self;
     unsafe fn times(self, other: Self) -> Self;
     unsafe fn translation(self) -> Self::Half;
+    unsafe fn rotation(self) -> Self::Half;
+    /// The half of translation of `self`, that of rotation of `other`.
+    unsafe fn turning_as(self, other: Self) -> Self;
     /// The half of rotation filled with the number at `from`.
     unsafe fn with_rotation_of(self, from: *const Self::Scalar) -> Self;
     /// The first three of each half of `self`, the last ones of `other`.
@@ -109,6 +112,16 @@ impl Octet for Two {
     #[inline]
     unsafe fn translation(self) -> __m256d {
         self.0
+    }
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    unsafe fn rotation(self) -> __m256d {
+        self.1
+    }
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    unsafe fn turning_as(self, other: Self) -> Self {
+        Self(self.0, other.1)
     }
     #[target_feature(enable = "avx2")]
     #[inline]
@@ -214,6 +227,16 @@ impl Octet for __m256 {
     #[inline]
     unsafe fn translation(self) -> __m128 {
         _mm256_castps256_ps128(self)
+    }
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    unsafe fn rotation(self) -> __m128 {
+        _mm256_extractf128_ps::<1>(self)
+    }
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    unsafe fn turning_as(self, other: Self) -> Self {
+        _mm256_blend_ps::<0b1111_0000>(self, other)
     }
     #[target_feature(enable = "avx2")]
     #[inline]

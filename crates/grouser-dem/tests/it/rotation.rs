@@ -257,7 +257,7 @@ fn a_bed_of_elongated_grains_comes_to_rest_unless_each_rectangle_stands_for_itse
 fn cubes_at_55_degrees(build_up: f64) -> f64 {
     let (spheres, settings) = falling_column::<F64>(200, 7);
     let scale: f64 = spheres.iter().map(|sphere| sphere.mass * 9.81 * sphere.radius).sum();
-    let cubes = TiltingSettings { build_up, lift_damping: 0.0, ..TiltingSettings::of(GrainShape::Cube) };
+    let cubes = TiltingSettings { build_up, ..TiltingSettings::of(GrainShape::Cube) };
     let law =
         Rotating { forces: HertzMindlin::<false, false>, rotation: Tilting::<false>::new(&cubes).unwrap() };
     let mut bed = Bed::new(spheres, settings, table(0.3, 0.3, Tail::CutCorrected), law).unwrap();

@@ -99,7 +99,8 @@ mod tests {
         assert!((cube.mobility() - 5.5).abs() < 1e-12 && (rod.mobility() - 19.0).abs() < 1e-12);
         let step = |rotation: &str| {
             let text = include_str!("../../../../scenarios/bevameter_angular.ron");
-            let text = text.replace("rotation: Free)", &format!("rotation: {rotation})"));
+            assert!(text.contains("rotation: Free,"));
+            let text = text.replace("rotation: Free,", &format!("rotation: {rotation},"));
             let scenario = crate::scene::read("scene", &text, false, &[]).expect("the scene is sound");
             time_step(&scenario, scenario.soil.grains().expect("grains")).expect("sound").step_s
         };
