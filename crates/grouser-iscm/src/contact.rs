@@ -211,8 +211,8 @@ impl FootImprint {
         }
         if !imprint.edges.is_empty() {
             let own: Vec<f64> = nodes.iter().map(|node| node.depth).collect();
-            for (n, seen) in &imprint.edges {
-                nodes[*n].depth = seen.iter().map(|&(m, weight)| weight * own[m]).sum();
+            for edge in &imprint.edges {
+                nodes[edge.node].depth = edge.seen.iter().map(|&(m, weight)| weight * own[m]).sum();
             }
         }
         (nodes, deepest)
@@ -277,12 +277,13 @@ impl FootImprint {
         let imprint = &self.layers[layer];
         // Shoes are flat, wheels lie in the last layer.
         let is_curved = integration.partial == PartialLoad::Proportional && layer + 1 == self.layers.len();
+        let most_sag = if is_curved { MOST_SAG * imprint.spacing } else { 0.0 };
         let (n_x, n_grid) = (imprint.n_x, terrain.grid().n_x());
         for j in 0..imprint.n_y.saturating_sub(1) {
             for i in 0..n_x.saturating_sub(1) {
                 let n = j * n_x + i;
                 let cell = [nodes[n], nodes[n + 1], nodes[n + n_x], nodes[n + n_x + 1]];
-                if is_free(&cell, MOST_SAG * imprint.spacing) {
+                if is_free(&cell, most_sag) {
                     continue;
                 }
                 // Diagonals alternate so that no direction is preferred.
@@ -295,18 +296,23 @@ impl FootImprint {
                 for corners in &triangles {
                     let [p, q, r] = *corners;
                     let at = [cell[p.0 + 2 * p.1], cell[q.0 + 2 * q.1], cell[r.0 + 2 * r.1]];
-                    let is_covered = at.iter().any(|c| c.share > 0.0);
+                    if is_free(&at, most_sag) {
+                        continue;
+                    }
+                    // Written out: closures over arrays are not inlined into code for wider vectors.
+                    let [a, b, c] = &at;
+                    let on_window = |(a, b): (usize, usize)| (i + a, j + b);
                     let corners_at = Corners {
-                        z: at.map(|c| c.z),
-                        share: at.map(|c| c.share),
-                        depth: at.map(|c| c.depth),
+                        z: [a.z, b.z, c.z],
+                        share: [a.share, b.share, c.share],
+                        depth: [a.depth, b.depth, c.depth],
                         sag: if is_curved {
-                            imprint.sag(corners.map(|(a, b)| (i + a, j + b)))
+                            imprint.sag([on_window(p), on_window(q), on_window(r)])
                         } else {
                             [0.0; 3]
                         },
                     };
-                    if !is_covered || corners_at.is_free() {
+                    if corners_at.is_free() {
                         continue;
                     }
                     let on_grid = |(a, b): (usize, usize)| (j_g + b) * n_grid + i_g + a;

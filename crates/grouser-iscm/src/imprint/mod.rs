@@ -41,6 +41,14 @@ const EMPTY: ImprintNode = ImprintNode {
     is_known: false,
 };
 
+/// A node at the edge of the gear, and which nodes' ground it is taken to see.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Edge {
+    pub node: usize,
+    /// Nodes around and the node itself, with weights that add up to one, zero for those that do not count.
+    pub seen: [(usize, f64); 9],
+}
+
 /// Grid model over a window of the terrain grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Imprint {
@@ -58,8 +66,8 @@ pub struct Imprint {
     origin: [f64; 2],
     ceiling: f64,
     partial: PartialLoad,
-    /// Nodes at the edge of the gear, and which nodes' ground they are taken to see, with weights that add up to one.
-    pub(crate) edges: Vec<(usize, Vec<(usize, f64)>)>,
+    /// Nodes at the edge of the gear.
+    pub(crate) edges: Vec<Edge>,
 }
 
 impl Imprint {
@@ -105,7 +113,7 @@ impl Imprint {
     #[inline(always)]
     pub(crate) fn sag(&self, [p, q, r]: [(usize, usize); 3]) -> [f64; 3] {
         let along = |a: (usize, usize), b: (usize, usize)| {
-            let [from, to] = [a, b].map(|(i, j)| &self.nodes[j * self.n_x + i]);
+            let (from, to) = (&self.nodes[a.1 * self.n_x + a.0], &self.nodes[b.1 * self.n_x + b.0]);
             if from.owner != to.owner || !from.is_known || !to.is_known {
                 return 0.0;
             }
@@ -238,26 +246,30 @@ impl Imprint {
                     continue;
                 }
                 let trusted = within(i, j);
-                let near = AROUND.map(|(di, dj)| {
+                // Those along the axes come first, then those across the corners, then the point itself.
+                let (mut left, mut sum) = (1.0, 0.0);
+                let mut edge = Edge { node: n, seen: [(n, 0.0); 9] };
+                for (k, (di, dj)) in AROUND.into_iter().enumerate() {
                     let (a, b) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
                     // Ruts have their walls beside the wheel.
                     let beside = (di as f64 * sideways.x + dj as f64 * sideways.y).powi(2)
                         / (di * di + dj * dj) as f64;
-                    (a, b, within(a, b) * beside)
-                });
-                // Those along the axes come first, then those across the corners, then the point itself.
-                let left = (1.0 - near[..4].iter().map(|n| n.2).sum::<f64>()).max(0.0);
-                let mut seen = vec![(n, trusted + BARELY * left)];
-                for (k, &(a, b, weight)) in near.iter().enumerate() {
-                    let weight = (1.0 - trusted) * weight * if k < 4 { 1.0 } else { ACROSS * left };
+                    let weight = within(a, b) * beside;
+                    if k < 4 {
+                        left -= weight;
+                    }
+                    let weight =
+                        (1.0 - trusted) * weight * if k < 4 { 1.0 } else { ACROSS * f64::max(left, 0.0) };
                     if weight > 0.0 {
-                        seen.push((b * self.n_x + a, weight));
+                        edge.seen[k] = (b * self.n_x + a, weight);
+                        sum += weight;
                     }
                 }
-                if seen.len() > 1 {
-                    let sum: f64 = seen.iter().map(|s| s.1).sum();
-                    seen.iter_mut().for_each(|s| s.1 /= sum);
-                    edges.push((n, seen));
+                if sum > 0.0 {
+                    edge.seen[8] = (n, trusted + BARELY * f64::max(left, 0.0));
+                    sum += edge.seen[8].1;
+                    edge.seen.iter_mut().for_each(|seen| seen.1 /= sum);
+                    edges.push(edge);
                 }
             }
         }

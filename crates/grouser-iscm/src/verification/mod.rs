@@ -62,6 +62,18 @@ impl Row {
         Self { case, quantity: quantity.into(), computed, reference, tolerance, unit, source }
     }
 
+    /// An observed order of convergence that must reach `nominal`, within a tenth; more is no fault.
+    fn order_at_least(
+        case: &'static str,
+        between: &str,
+        observed: f64,
+        nominal: f64,
+        source: &'static str,
+    ) -> Self {
+        let quantity = format!("order {between}, at least {nominal} (observed {observed:.2})");
+        Self::new(case, quantity, observed.min(nominal), nominal, 0.1, "-", source)
+    }
+
     /// Whether the difference stays within the tolerance.
     pub fn is_passed(&self) -> bool {
         (self.computed - self.reference).abs() <= self.tolerance

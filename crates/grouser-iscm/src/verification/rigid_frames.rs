@@ -52,7 +52,7 @@ fn rut_rows(case: &'static str, machine: &Machine, n_wheels: f64) -> Vec<Row> {
     vec![
         Row::new(case, "sinkage at 1 cm terrain", fine, exact, 3e-5, "m", SEGMENT),
         Row::new(case, "sinkage at 4 cm terrain", usual, exact, 3e-5, "m", SEGMENT),
-        Row::new(case, "observed order, 16 cm to 4 cm", order, 3.0, 1.0, "-", source),
+        Row::order_at_least(case, "16 cm to 4 cm", order, 2.0, source),
     ]
 }
 

@@ -35,36 +35,35 @@ fn rut_rows(
     [mass, radius, exact]: [f64; 3],
     has_tracks: bool,
     spacings: [f64; 3],
-    order: (f64, f64, &'static str),
+    source: &'static str,
 ) -> Vec<Row> {
     let [coarse, usual, fine] = spacings.map(|d| sinkage(d, mass, has_tracks, radius));
     let halvings = (spacings[0] / spacings[1]).log2();
     let observed = ((coarse - exact).abs() / (usual - exact).abs()).log2() / halvings;
     let at = |d: f64| format!("sinkage at {} cm terrain", 100.0 * d);
-    let between = format!("observed order, {} cm to {} cm", 100.0 * spacings[0], 100.0 * spacings[1]);
-    let (nominal, within, source) = order;
+    let between = format!("{} cm to {} cm", 100.0 * spacings[0], 100.0 * spacings[1]);
     vec![
         Row::new(case, at(spacings[2]), fine, exact, 3e-5, "m", CLOSED_FORM),
         Row::new(case, at(spacings[1]), usual, exact, 3e-5, "m", CLOSED_FORM),
-        Row::new(case, between, observed, nominal, within, "-", source),
+        Row::order_at_least(case, &between, observed, 2.0, source),
     ]
 }
 
 /// Eight wheels, 30,000 kg.
 pub fn wheels_on_bogies() -> Vec<Row> {
     let exact = bisect(|z| 8.0 * cylinder_force(0.5, 0.5, 1.5e6, z) - 30_000.0 * GRAVITY, 0.0, 0.5);
-    let order = (3.0, 1.0, "parabolas through heights and slopes of an arc");
+    let source = "parabolas through heights and slopes of an arc";
     let case = "P2 test 12: rut depth, wheels on bogies";
-    rut_rows(case, [30_000.0, 0.5, exact], false, [0.16, 0.04, 0.01], order)
+    rut_rows(case, [30_000.0, 0.5, exact], false, [0.16, 0.04, 0.01], source)
 }
 
 /// Four tracked bogies, 32,400 kg.
 pub fn tracks_on_bogies() -> Vec<Row> {
     let bogie = |z: f64| cylinder_force(0.52, 0.6, 1.5e6, z) + 0.6 * 1.5 * 1.5e6 * z;
     let exact = bisect(|z| 4.0 * bogie(z) - 32_400.0 * GRAVITY, 0.0, 0.5);
-    let order = (2.0, 0.6, "flat pieces of a band under an arc");
+    let source = "flat pieces of a band under an arc";
     let case = "P2 test 16: rut depth, tracks on bogies";
-    rut_rows(case, [32_400.0, 0.52, exact], true, [0.04, 0.02, 0.01], order)
+    rut_rows(case, [32_400.0, 0.52, exact], true, [0.04, 0.02, 0.01], source)
 }
 
 /// Load shifted 0.1 m to the left: the ground's forces follow the lever rule.
