@@ -8,8 +8,8 @@ use std::ops::Range;
 
 /// Candidates that are looked at together.
 const GROUP: usize = 8;
-/// Near grains of one grain that are kept before they are handed over.
-const MOST_NEAR: usize = 128;
+/// Pairs that are kept before they are appended to the list.
+const MOST_LAST: usize = 128;
 
 /// Places and radii of all grains, one array each, with the room of a group behind the last. Grains that are nobody's
 /// candidates are nowhere (NaN).
@@ -18,6 +18,7 @@ pub(crate) struct Candidates<C> {
     y: Vec<C>,
     z: Vec<C>,
     radius: Vec<C>,
+    period: Period<C>,
     set: InstructionSet,
 }
 
@@ -29,28 +30,30 @@ pub(crate) struct Seeker<C> {
     pub reach: C,
 }
 
-/// Near grains that wait to be handed over.
-pub(crate) struct Near {
-    pairs: [Pair; MOST_NEAR],
-    n: usize,
+/// Pairs that have been found, the last ones in a row of fixed length: a list that may grow would be asked at each.
+pub(crate) struct Found {
+    pairs: Vec<Pair>,
+    last: [Pair; MOST_LAST],
+    n_last: usize,
 }
 
-impl Near {
+impl Found {
     /// None.
     pub fn none() -> Self {
-        Self { pairs: [Pair::new(0, 0, 0); MOST_NEAR], n: 0 }
+        Self { pairs: Vec::new(), last: [Pair::new(0, 0, 0); MOST_LAST], n_last: 0 }
     }
 
-    /// Appends all to `pairs`.
-    pub fn hand_over(&mut self, pairs: &mut Vec<Pair>) {
-        pairs.extend_from_slice(&self.pairs[..self.n]);
-        self.n = 0;
+    /// All of them.
+    pub fn pairs(&mut self) -> &mut Vec<Pair> {
+        self.pairs.extend_from_slice(&self.last[..self.n_last]);
+        self.n_last = 0;
+        &mut self.pairs
     }
 }
 
 impl<C: Real> Candidates<C> {
     /// All `spheres`, of which those larger than `largest` [m] are not candidates.
-    pub fn new<P: Precision<Coordinate = C>>(spheres: &[Sphere<P>], largest: C) -> Self {
+    pub fn new<P: Precision<Coordinate = C>>(spheres: &[Sphere<P>], largest: C, period: Period<C>) -> Self {
         let nowhere = C::from_f64(f64::NAN);
         let column = |component: fn(&Sphere<P>) -> C| {
             let padding = std::iter::repeat_n(nowhere, GROUP);
@@ -61,70 +64,41 @@ impl<C: Real> Candidates<C> {
             *x = nowhere;
         }
         let (y, z) = (column(|sphere| sphere.position.y), column(|sphere| sphere.position.z));
-        Self { x, y, z, radius: column(|sphere| sphere.radius), set: InstructionSet::detect() }
+        Self { x, y, z, radius: column(|sphere| sphere.radius), period, set: InstructionSet::detect() }
     }
 
-    /// Appends those grains of `range` to `near` whose surfaces are closer than the skin to that of `seeker`; what does not fit
-    /// is handed over to `pairs` before.
-    pub fn look(
-        &self,
-        seeker: &Seeker<C>,
-        range: Range<u32>,
-        period: &Period<C>,
-        near: &mut Near,
-        pairs: &mut Vec<Pair>,
-    ) {
+    /// Adds those grains of `range` to `found` whose surfaces are closer than the skin to that of `seeker`.
+    pub fn look(&self, seeker: &Seeker<C>, range: Range<u32>, found: &mut Found) {
         match self.set {
-            InstructionSet::Baseline => self.look_at_groups(seeker, range, period, near, pairs),
+            InstructionSet::Baseline => self.look_at_groups(seeker, range, found),
             // SAFETY: `detect` found the instructions on this machine.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => unsafe { self.look_avx2(seeker, range, period, near, pairs) },
+            InstructionSet::Avx2 => unsafe { self.look_avx2(seeker, range, found) },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => unsafe { self.look_avx512(seeker, range, period, near, pairs) },
+            InstructionSet::Avx512 => unsafe { self.look_avx512(seeker, range, found) },
         }
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn look_avx2(
-        &self,
-        seeker: &Seeker<C>,
-        range: Range<u32>,
-        period: &Period<C>,
-        near: &mut Near,
-        pairs: &mut Vec<Pair>,
-    ) {
-        self.look_at_groups(seeker, range, period, near, pairs);
+    fn look_avx2(&self, seeker: &Seeker<C>, range: Range<u32>, found: &mut Found) {
+        self.look_at_groups(seeker, range, found);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
-    fn look_avx512(
-        &self,
-        seeker: &Seeker<C>,
-        range: Range<u32>,
-        period: &Period<C>,
-        near: &mut Near,
-        pairs: &mut Vec<Pair>,
-    ) {
-        self.look_at_groups(seeker, range, period, near, pairs);
+    fn look_avx512(&self, seeker: &Seeker<C>, range: Range<u32>, found: &mut Found) {
+        self.look_at_groups(seeker, range, found);
     }
 
     #[inline(always)]
-    fn look_at_groups(
-        &self,
-        seeker: &Seeker<C>,
-        range: Range<u32>,
-        period: &Period<C>,
-        near: &mut Near,
-        pairs: &mut Vec<Pair>,
-    ) {
+    fn look_at_groups(&self, seeker: &Seeker<C>, range: Range<u32>, found: &mut Found) {
         let mut from = range.start as usize;
         let end = range.end as usize;
         while from < end {
-            if near.n > MOST_NEAR - GROUP {
-                near.hand_over(pairs);
+            if found.n_last > MOST_LAST - GROUP {
+                found.pairs();
             }
             let group = from..from + GROUP;
             let (x, y) = (&self.x[group.clone()], &self.y[group.clone()]);
@@ -132,15 +106,16 @@ impl<C: Real> Candidates<C> {
             let (mut room, mut image) = ([C::ZERO; GROUP], [0_u32; GROUP]);
             for k in 0..GROUP {
                 let reach = seeker.reach + radius[k];
-                let (difference, its_image) = period.nearest(seeker.position - Vector::new(x[k], y[k], z[k]));
+                let (difference, its_image) =
+                    self.period.nearest(seeker.position - Vector::new(x[k], y[k], z[k]));
                 room[k] = difference.norm_squared() - reach * reach;
                 image[k] = its_image;
             }
             // A candidate is written down in any case and counted if it is near: no branch that would be guessed wrong.
             let n = (end - from).min(GROUP);
             for k in 0..GROUP {
-                near.pairs[near.n % MOST_NEAR] = Pair::new(seeker.grain, (from + k) as u32, image[k]);
-                near.n += usize::from((k < n) & (room[k] < C::ZERO));
+                found.last[found.n_last % MOST_LAST] = Pair::new(seeker.grain, (from + k) as u32, image[k]);
+                found.n_last += usize::from((k < n) & (room[k] < C::ZERO));
             }
             from += GROUP;
         }
@@ -171,7 +146,7 @@ mod tests {
             .collect();
         let (skin, largest) = (coordinate(0.01), coordinate(0.09));
         let period = domain.period();
-        let mut candidates = Candidates::new(&spheres, largest);
+        let mut candidates = Candidates::new(&spheres, largest, period);
         let mut expected = Vec::new();
         for (i, sphere) in spheres.iter().enumerate() {
             for (j, other) in spheres.iter().enumerate().skip(i + 1) {
@@ -185,16 +160,15 @@ mod tests {
         assert!(expected.len() > 500 && expected.iter().any(|pair| pair.image() != 13));
         for set in [InstructionSet::Baseline, InstructionSet::detect()] {
             candidates.set = set;
-            let (mut near, mut pairs) = (Near::none(), Vec::new());
+            let mut found = Found::none();
             for (i, sphere) in spheres.iter().enumerate() {
                 let seeker =
                     Seeker { grain: i as u32, position: sphere.position, reach: sphere.radius + skin };
                 let (from, middle) = (i as u32 + 1, (i as u32 + 300).min(600));
-                candidates.look(&seeker, from..middle, &period, &mut near, &mut pairs);
-                candidates.look(&seeker, middle.max(from)..600, &period, &mut near, &mut pairs);
+                candidates.look(&seeker, from..middle, &mut found);
+                candidates.look(&seeker, middle.max(from)..600, &mut found);
             }
-            near.hand_over(&mut pairs);
-            assert_eq!(pairs, expected, "{set:?}");
+            assert_eq!(found.pairs(), &expected, "{set:?}");
         }
     }
 

@@ -146,15 +146,12 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
         if !parted.is_empty() {
             order.iter_mut().for_each(|place| *place = parted[*place as usize]);
         }
-        let period = domain.period();
         let [skin, largest] = [self.skin, self.levels.largest(0)].map(P::Coordinate::from_f64);
         let spheres = &grains.spheres[..n_listed];
-        let candidates = Candidates::new(spheres, largest);
+        let candidates = Candidates::new(spheres, largest, domain.period());
         let mut slabs: Vec<Slab<P::Real, M>> = layers_of_slabs(&grid, GRAINS_PER_SLAB, 1)
             .into_par_iter()
-            .map(|layers| {
-                Slab::build(&grid, layers, spheres, &candidates, &period, skin, largest, &is_asleep)
-            })
+            .map(|layers| Slab::build(&grid, layers, spheres, &candidates, skin, largest, &is_asleep))
             .collect();
         let mut large = lists_of_large_grains(&self.levels, &grid, spheres, domain, self.skin, &is_asleep);
         // Memory comes from the old lists, or from those who slept.

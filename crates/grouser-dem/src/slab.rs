@@ -3,9 +3,8 @@
 //! A pair that starts in slab s ends in s or in s + 1, so a grain of slab s receives forces from the passes over s − 1
 //! and over s alone. The order in which slabs are worked on is the matter of [`crate::sweep`].
 
-use crate::candidates::{Candidates, Near, Seeker};
+use crate::candidates::{Candidates, Found, Seeker};
 use crate::cell_grid::CellGrid;
-use crate::domain::Period;
 use crate::plane::PlaneList;
 use grouser_contact::{ContactLedger, Memory, Precision, Real, Sphere};
 use serde::{Deserialize, Serialize};
@@ -79,7 +78,6 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
         layers: std::ops::Range<usize>,
         spheres: &[Sphere<P>],
         candidates: &Candidates<P::Coordinate>,
-        period: &Period<P::Coordinate>,
         skin: P::Coordinate,
         largest: P::Coordinate,
         is_asleep: &[bool],
@@ -88,7 +86,7 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
         let layer = n_rows * n_columns;
         let first_grain = grid.first[layers.start * layer];
         let mut rows = vec![0];
-        let (mut pairs, mut near) = (Vec::new(), Near::none());
+        let mut found = Found::none();
         let mut ranges: Vec<std::ops::Range<u32>> = Vec::new();
         for cell in layers.start * layer..layers.end * layer {
             ranges.clear();
@@ -96,32 +94,32 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
             grid.forward_ranges(place, |range| ranges.push(range));
             for i in grid.first[cell]..grid.first[cell + 1] {
                 let sphere = &spheres[i as usize];
+                let first = found.pairs().len();
                 if sphere.radius > largest {
-                    rows.push(pairs.len() as u32);
+                    rows.push(first as u32);
                     continue;
                 }
-                let first = pairs.len();
                 let seeker = Seeker { grain: i, position: sphere.position, reach: sphere.radius + skin };
                 let own = i + 1..grid.first[cell + 1];
                 for range in std::iter::once(own).chain(ranges.iter().cloned()) {
-                    candidates.look(&seeker, range, period, &mut near, &mut pairs);
+                    candidates.look(&seeker, range, &mut found);
                 }
-                near.hand_over(&mut pairs);
+                let pairs = found.pairs();
                 if is_asleep.get(i as usize) == Some(&true) {
-                    let mut from = first;
-                    while from < pairs.len() {
-                        if is_asleep[pairs[from].grains()[1] as usize] {
-                            pairs.remove(from);
-                        } else {
-                            from += 1
+                    let mut kept = first;
+                    for place in first..pairs.len() {
+                        if !is_asleep[pairs[place].grains()[1] as usize] {
+                            pairs[kept] = pairs[place];
+                            kept += 1;
                         }
                     }
+                    pairs.truncate(kept);
                 }
                 rows.push(pairs.len() as u32);
             }
         }
         let n_grains = rows.len() as u32 - 1;
-        Self::of_pairs(first_grain, n_grains, rows, pairs)
+        Self::of_pairs(first_grain, n_grains, rows, std::mem::take(found.pairs()))
     }
 
     /// A slab of given pairs, by rising first grain, none of which has touched yet.

@@ -71,7 +71,7 @@ pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
         let waits = slabs.len().is_multiple_of(2) && !is_last(end - 1);
         let (own, last) = slabs.split_at_mut(slabs.len() - usize::from(waits));
         let slab = Mutex::new(last.first_mut());
-        waiting.push(Waiting { number: end - 1, n_missing: AtomicU32::new(2), slab });
+        waiting.push(WaitingSlab { number: end - 1, n_missing: AtomicU32::new(2), slab });
         runs.push(Run { number: run, start, slabs: own });
     }
     let n_runs = runs.len();
@@ -121,13 +121,13 @@ struct Run<'a, S> {
 }
 
 /// A slab that is passed over once two others have been.
-struct Waiting<'a, S> {
+struct WaitingSlab<'a, S> {
     number: usize,
     n_missing: AtomicU32,
     slab: Mutex<Option<&'a mut S>>,
 }
 
-impl<'a, S> Waiting<'a, S> {
+impl<'a, S> WaitingSlab<'a, S> {
     /// Another slab that this one waits for has been passed over.
     fn has_one_less_to_wait_for(&self) {
         self.n_missing.fetch_sub(1, Ordering::AcqRel);

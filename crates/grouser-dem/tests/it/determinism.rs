@@ -41,7 +41,15 @@ fn any_number_of_threads_gives_the_same_bytes() {
 }
 
 fn on_every_instruction_set<P: Precision>(n_grains: usize, n_steps: u64) {
-    let mut baseline = column::<P>(n_grains);
+    alike_on_every_instruction_set(|| column::<P>(n_grains), n_grains, n_steps);
+}
+
+fn alike_on_every_instruction_set<P: Precision>(
+    column: impl Fn() -> Bed<Law, P>,
+    n_grains: usize,
+    n_steps: u64,
+) {
+    let mut baseline = column();
     baseline.use_instruction_set(InstructionSet::Baseline);
     go_on(&mut baseline, n_steps);
     assert!(baseline.n_contacts() > n_grains / 6 && baseline.energy().contacts.dissipated() > 0.0);
@@ -51,7 +59,7 @@ fn on_every_instruction_set<P: Precision>(n_grains: usize, n_steps: u64) {
         sets.push(InstructionSet::Avx2);
     }
     for set in sets {
-        let mut other = column::<P>(n_grains);
+        let mut other = column();
         other.use_instruction_set(set);
         go_on(&mut other, n_steps);
         assert!(bytes(&baseline) == bytes(&other), "{set:?}");
@@ -63,6 +71,31 @@ fn every_instruction_set_gives_the_same_bytes() {
     on_every_instruction_set::<F64>(3000, 800);
     on_every_instruction_set::<Mixed>(1500, 700);
     on_every_instruction_set::<F32>(1500, 700);
+}
+
+fn with_every_motion<P: Precision>() {
+    for (rotation, has_orientations) in
+        [(Rotation::Fixed, false), (Rotation::Fixed, true), (Rotation::Free, true)]
+    {
+        let column = || {
+            let bed = column::<P>(500);
+            let settings = BedSettings { rotation, ..bed.settings().clone() };
+            let spheres = bed.grains().spheres.clone();
+            let mut bed = Bed::new(spheres, settings, bed.pair_table().clone(), HertzMindlin).unwrap();
+            if has_orientations {
+                bed.grains_mut().track_orientations();
+            }
+            bed
+        };
+        alike_on_every_instruction_set(column, 500, 500);
+    }
+}
+
+#[test]
+fn held_grains_and_grains_with_orientations_give_the_same_bytes_on_every_instruction_set() {
+    with_every_motion::<F64>();
+    with_every_motion::<Mixed>();
+    with_every_motion::<F32>();
 }
 
 fn split_anywhere<P: Precision>(n_grains: usize) {
