@@ -1,6 +1,6 @@
 //! Grains at three sizes of work: one law's answer, one pass over a bed's contacts, whole steps of a scene.
 //!
-//! `cargo xtask bench grains`. Throughput is contacts per second for the law and the pass, grain-steps per second for the scene.
+//! `cargo xtask bench grains`, on one thread. Throughput is contacts per second for the law and the pass, grain-steps per second for the scene.
 
 use benches::beds::{BedOf, Law, SAND};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -81,5 +81,9 @@ fn scene(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(grains, law, pass, scene);
+fn one_thread(_: &mut Criterion) {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("nobody has asked for threads yet");
+}
+
+criterion_group!(grains, one_thread, law, pass, scene);
 criterion_main!(grains);
