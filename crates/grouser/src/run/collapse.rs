@@ -109,7 +109,7 @@ impl<L: Law> Pass<L> for Collapsing<L> {
         let (sum, n) = tops.fold((0.0, 0.0), |(sum, n), top| (sum + top, n + 1.0));
         bed.keep_ledger(true);
         let height = bed.grains().spheres.iter().map(|s| s.position.z.to_f64()).fold(0.0, f64::max);
-        let gravity = scenario.gravity_m_s2.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let gravity = scenario.gravity();
         Ok(Self {
             before: bed.energy(),
             bed,
@@ -178,7 +178,7 @@ impl<L: Law> Collapsing<L> {
     /// A row of the time series; gives the kinetic energy over Σ m g r.
     fn sample(&mut self, scenario: &Scenario) -> f64 {
         let grains = self.bed.grains();
-        let gravity = scenario.gravity_m_s2.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let gravity = scenario.gravity();
         let weight = |s: &Sphere<L::Precision>| s.mass.to_f64() * gravity * s.radius.to_f64();
         let scale: f64 = grains.spheres.iter().map(weight).sum();
         let ratio = grains.kinetic_energy().iter().sum::<f64>() / scale;

@@ -52,7 +52,7 @@ fn on_grains(scenario: &Scenario, soil: &Grains) -> Result<Estimate, SetupError>
     let n_grains: usize =
         bed::layers(soil, &Materials::of(scenario)).iter().map(|layer| layer.n_grains).sum();
     let depth: f64 = soil.layers.iter().map(|layer| layer.depth_m).sum();
-    let gravity = scenario.gravity_m_s2.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let gravity = scenario.gravity();
     // The top grain falls about once the bed's depth; coming to rest takes about three times as long.
     let fall = (2.0 * 1.2 * depth / gravity).sqrt();
     let settling_steps = (4.0 * fall / step.step_s) as u64;

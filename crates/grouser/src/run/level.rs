@@ -2,22 +2,43 @@
 
 use grouser_contact::{Precision, Real, Sphere};
 
+/// Highest points [m] over square cells two mean grain diameters wide, row by row along x; −∞ where no grain's centre lies.
+pub struct Tops {
+    /// Number of cells along x and y.
+    pub counts: [usize; 2],
+    heights: Vec<f64>,
+}
+
+impl Tops {
+    /// Of grains in a box of the edges `size` [m].
+    pub fn of<P: Precision>(spheres: &[Sphere<P>], size: [f64; 2]) -> Self {
+        let mean_radius =
+            spheres.iter().map(|sphere| sphere.radius.to_f64()).sum::<f64>() / spheres.len() as f64;
+        let counts = size.map(|length| ((length / (4.0 * mean_radius)) as usize).max(1));
+        let mut heights = vec![f64::NEG_INFINITY; counts[0] * counts[1]];
+        for sphere in spheres {
+            let cell = |along: f64, axis: usize| {
+                ((along / size[axis] * counts[axis] as f64).max(0.0) as usize).min(counts[axis] - 1)
+            };
+            let place = cell(sphere.position.y.to_f64(), 1) * counts[0] + cell(sphere.position.x.to_f64(), 0);
+            heights[place] = f64::max(heights[place], top_of(sphere));
+        }
+        Self { counts, heights }
+    }
+
+    /// Mean over the cells that hold grains, of all or of one slice across x [m]; `None` where there is none.
+    pub fn mean(&self, slice: Option<usize>) -> Option<f64> {
+        let (first, step) = slice.map_or((0, 1), |slice| (slice, self.counts[0]));
+        let filled = self.heights.iter().skip(first).step_by(step).filter(|top| top.is_finite());
+        let (sum, n) = filled.fold((0.0, 0), |(sum, n), top| (sum + top, n + 1));
+        (n > 0).then(|| sum / f64::from(n))
+    }
+}
+
 /// Mean height of the bed's surface [m]: the mean, over square cells two mean grain diameters wide, of the highest point of
 /// any grain whose centre lies in the cell.
 pub fn surface_level<P: Precision>(spheres: &[Sphere<P>], size: [f64; 2]) -> f64 {
-    let mean_radius = spheres.iter().map(|sphere| sphere.radius.to_f64()).sum::<f64>() / spheres.len() as f64;
-    let counts = size.map(|length| ((length / (4.0 * mean_radius)) as usize).max(1));
-    let mut tops = vec![f64::NEG_INFINITY; counts[0] * counts[1]];
-    for sphere in spheres {
-        let cell = |along: f64, axis: usize| {
-            ((along / size[axis] * counts[axis] as f64).max(0.0) as usize).min(counts[axis] - 1)
-        };
-        let top =
-            &mut tops[cell(sphere.position.y.to_f64(), 1) * counts[0] + cell(sphere.position.x.to_f64(), 0)];
-        *top = top.max(top_of(sphere));
-    }
-    let filled: Vec<f64> = tops.into_iter().filter(|top| top.is_finite()).collect();
-    filled.iter().sum::<f64>() / filled.len() as f64
+    Tops::of(spheres, size).mean(None).unwrap_or(f64::NAN)
 }
 
 /// Highest point of any grain that a disc of `radius` around (`x`, `y`) would meet on its way down [m].

@@ -1,6 +1,7 @@
 //! The slope of a heap's surface.
 
-use grouser_contact::{Precision, Real, Sphere};
+use super::level::Tops;
+use grouser_contact::{Precision, Sphere};
 
 /// Lowest and highest share of the heap's height between which its slope is taken [-]: neither toe nor crest.
 const WINDOW: [f64; 2] = [0.15, 0.85];
@@ -8,23 +9,10 @@ const WINDOW: [f64; 2] = [0.15, 0.85];
 /// Height of the surface [m] over x [m]: in slices two mean grain diameters wide the mean, over cells as long along y, of the
 /// highest point of any grain. Slices without grains are left out.
 pub fn profile<P: Precision>(spheres: &[Sphere<P>], size: [f64; 2]) -> Vec<(f64, f64)> {
-    let mean_radius = spheres.iter().map(|sphere| sphere.radius.to_f64()).sum::<f64>() / spheres.len() as f64;
-    let counts = size.map(|length| ((length / (4.0 * mean_radius)) as usize).max(1));
-    let mut tops = vec![f64::NEG_INFINITY; counts[0] * counts[1]];
-    for sphere in spheres {
-        let cell = |along: f64, axis: usize| {
-            ((along / size[axis] * counts[axis] as f64).max(0.0) as usize).min(counts[axis] - 1)
-        };
-        let place = cell(sphere.position.x.to_f64(), 0) * counts[1] + cell(sphere.position.y.to_f64(), 1);
-        tops[place] = tops[place].max(sphere.position.z.to_f64() + sphere.radius.to_f64());
-    }
-    let width = size[0] / counts[0] as f64;
-    let slices = tops.chunks(counts[1]).enumerate().filter_map(|(slice, tops)| {
-        let filled: Vec<f64> = tops.iter().copied().filter(|top| top.is_finite()).collect();
-        let height = filled.iter().sum::<f64>() / filled.len() as f64;
-        (!filled.is_empty()).then_some(((slice as f64 + 0.5) * width, height))
-    });
-    slices.collect()
+    let tops = Tops::of(spheres, size);
+    let width = size[0] / tops.counts[0] as f64;
+    let point = |slice: usize| Some(((slice as f64 + 0.5) * width, tops.mean(Some(slice))?));
+    (0..tops.counts[0]).filter_map(point).collect()
 }
 
 /// A straight line through a surface that falls along x.

@@ -28,7 +28,7 @@ pub fn time_step(scenario: &Scenario, soil: &Grains) -> Result<TimeStep, Paramet
     let materials = &Materials::of(scenario);
     let turning = share_of_turning(scenario);
     let fraction = scenario.dials.time_step_fraction * turning;
-    let gravity = scenario.gravity_m_s2.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let gravity = scenario.gravity();
     let tool_speed = scenario.motion.as_ref().map_or(0.0, Motion::speed);
     // The fastest grain: a fall through the loose packing, or the tool.
     let depth: f64 = soil.layers.iter().map(|layer| layer.depth_m).sum();

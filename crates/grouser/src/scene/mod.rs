@@ -111,6 +111,11 @@ fn beside(scenario: &str, file: &mut String) {
 }
 
 impl Scenario {
+    /// Strength of gravity [m/s²].
+    pub fn gravity(&self) -> f64 {
+        self.gravity_m_s2.iter().map(|g| g * g).sum::<f64>().sqrt()
+    }
+
     /// Takes files beside the scenario, where there are any.
     fn find_beside(&mut self, scenario: &str) {
         if let Soil::PressureSinkage(ground) = &mut self.soil {

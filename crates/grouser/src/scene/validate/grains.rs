@@ -119,7 +119,7 @@ fn settle(check: &mut Check, scenario: &Scenario, bed: &Grains) {
 
 /// A bed so soft that it cannot carry itself.
 fn own_weight(check: &mut Check, scenario: &Scenario, bed: &Grains) {
-    let gravity = scenario.gravity_m_s2.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let gravity = scenario.gravity();
     let pressure: f64 = bed
         .layers
         .iter()
