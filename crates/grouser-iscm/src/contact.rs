@@ -3,12 +3,13 @@
 //! Steps as in `docs/theory/iscm.md`, F1 to F5.
 
 use grouser_geometry::{Pose, Vec3};
-use nalgebra::{Matrix3, Matrix6, Vector6};
+use nalgebra::{Matrix3, Matrix6};
 
+use crate::batch::{Batch, LANES};
+use crate::footing::{Facet, Footing, Site};
 use crate::imprint::{Imprint, MOST_SAG};
-use crate::polygon::{
-    Corners, OneArray, PartialLoad, PolygonLoad, Reloaded, Stiff, SubTriangles, ThreeArrays, integrate,
-};
+use crate::polygon::{Answer, Corners, PartialLoad, SubTriangles, integrate};
+use crate::response::{OneArray, Reloaded, Response, Stiff, ThreeArrays};
 use crate::terrain::{Terrain, Unloading};
 use crate::track::{DrawnTrack, Followed};
 
@@ -46,8 +47,6 @@ pub struct FootLoad {
     pub stiffness: Matrix6<f64>,
     /// Deepest sinkage of soil under load \[m\].
     pub deepest: f64,
-    /// Polygons that carry load.
-    pub n_polygons: usize,
 }
 
 /// A loaded polygon, as handed to a listener.
@@ -80,9 +79,11 @@ pub struct FootImprint {
     pub reference: Vec3,
     /// Slack tracks: their shoes give way to the ground.
     pub tracks: Vec<DrawnTrack>,
+    /// What of each imprint can press.
+    footings: Vec<Footing>,
 }
 
-/// Present state of a node under one imprint.
+/// Present state of a point under one imprint.
 #[derive(Clone, Copy, Default)]
 struct Node {
     /// Sinkage if the gear stood here \[m\].
@@ -95,13 +96,14 @@ struct Node {
     depth: f64,
 }
 
-/// Whether the gear presses nowhere between these corners: none is covered, or all lie below the gear by more than it sags in between.
-#[inline(always)]
-fn is_free(corners: &[Node], sag: f64) -> bool {
-    corners.iter().all(|c| c.share == 0.0) || corners.iter().all(|c| c.depth <= -sag)
-}
-
 impl FootImprint {
+    /// Running gear drawn as `layers` over a terrain of `n_grid` nodes along x, the lowest first and wheels last.
+    pub(crate) fn new(layers: Vec<Imprint>, reference: Vec3, n_grid: usize, partial: PartialLoad) -> Self {
+        let n = layers.len();
+        let footing = |k: usize| Footing::new(&layers[..=k], n_grid, partial, k + 1 == n);
+        Self { footings: (0..n).map(footing).collect(), layers, reference, tracks: Vec::new() }
+    }
+
     /// Force of the `terrain` on the gear after it moved by `motion` since the imprints were drawn.
     ///
     /// `motion` is small: undersides follow it in first order, h + d_z − ∂h/∂x d_x − ∂h/∂y d_y. Every loaded polygon is shown to `listen`.
@@ -112,16 +114,12 @@ impl FootImprint {
         integration: &Integration,
         mut listen: impl FnMut(&LoadedPolygon),
     ) -> FootLoad {
-        let mut load =
-            FootLoad { wrench: Wrench::default(), stiffness: Matrix6::zeros(), deepest: 0.0, n_polygons: 0 };
         let followed = self.followed(terrain, motion);
-        load.stiffness += followed.stiffness;
+        let mut load = FootLoad { wrench: Wrench::default(), stiffness: followed.stiffness, deepest: 0.0 };
         for layer in 0..self.layers.len() {
-            let (nodes, deepest) = self.nodes(layer, terrain, motion, &followed, integration.partial);
-            if let Some(deepest) = deepest {
-                load.deepest = load.deepest.max(deepest);
-                self.load_layer(layer, &nodes, terrain, integration, &mut load, &mut listen);
-            }
+            let nodes = self.nodes(layer, terrain, motion, &followed, integration.partial);
+            load.deepest = self.deepest(layer, terrain, &nodes).max(load.deepest);
+            self.load_layer(layer, &nodes, terrain, integration, &mut load, &mut listen);
         }
         load.stiffness.fill_lower_triangle_with_upper_triangle();
         load
@@ -131,15 +129,10 @@ impl FootImprint {
     pub fn stamp(&self, terrain: &mut Terrain, motion: &Pose) {
         let followed = self.followed(terrain, motion);
         for layer in 0..self.layers.len() {
-            let (nodes, _) = self.nodes(layer, terrain, motion, &followed, PartialLoad::Proportional);
-            let imprint = &self.layers[layer];
-            let n_grid = terrain.grid().n_x();
-            for j in 0..imprint.n_y {
-                for i in 0..imprint.n_x {
-                    let n = j * imprint.n_x + i;
-                    if imprint.nodes[n].is_inside && nodes[n].depth > 0.0 {
-                        terrain.stamp((imprint.j_0 + j) * n_grid + imprint.i_0 + i, nodes[n].height);
-                    }
+            let nodes = self.nodes(layer, terrain, motion, &followed, PartialLoad::Proportional);
+            for (site, node) in self.footings[layer].sites.iter().zip(nodes) {
+                if site.is_inside && node.depth > 0.0 {
+                    terrain.stamp(site.on_grid, node.height);
                 }
             }
         }
@@ -152,7 +145,7 @@ impl FootImprint {
         followed
     }
 
-    /// F1, F2: sinkage, height and share of every node of a layer, and the deepest sinkage if the gear touches the ground at all.
+    /// F1, F2: sinkage, height and share of every point of a layer.
     fn nodes(
         &self,
         layer: usize,
@@ -160,79 +153,53 @@ impl FootImprint {
         motion: &Pose,
         followed: &Followed,
         partial: PartialLoad,
-    ) -> (Vec<Node>, Option<f64>) {
-        let imprint = &self.layers[layer];
+    ) -> Vec<Node> {
+        let footing = &self.footings[layer];
         let turn: Matrix3<f64> = motion.rotation.to_rotation_matrix().matrix() - Matrix3::identity();
         let shift = motion.translation.vector;
-        let is_moved = turn != Matrix3::zeros() || shift != Vec3::zeros();
         let has_shifts = !followed.shifts.is_empty() && layer + 1 < self.layers.len();
-        let n_grid = terrain.grid().n_x();
         let original = terrain.grid().heights();
-        let mut nodes = vec![Node::default(); imprint.nodes.len()];
-        let mut deepest = None;
-        for j in 0..imprint.n_y {
-            let row = (imprint.j_0 + j) * n_grid + imprint.i_0;
-            for i in 0..imprint.n_x {
-                let (n, node) = (j * imprint.n_x + i, row + i);
-                let gear = &imprint.nodes[n];
-                let z_0 = original[node];
-                let ground = terrain.height(node);
-                if !gear.is_known {
-                    nodes[n] = Node { z: z_0 - ground, height: ground, share: 0.0, depth: 0.0 };
-                    continue;
-                }
-                let mut h = gear.height;
-                if is_moved {
-                    let [x, y] = imprint.position(i, j);
-                    let d = turn * Vec3::new(x, y, h) + shift;
-                    h += d.z - gear.slope[0] * d.x - gear.slope[1] * d.y;
-                }
-                if has_shifts && let Some(shift) = followed.shift(gear.owner) {
-                    let [x, y] = imprint.position(i, j);
-                    let d = shift.at(Vec3::new(x, y, gear.height));
-                    h += d.z - gear.slope[0] * d.x - gear.slope[1] * d.y;
-                }
-                let is_loaded = h < ground && gear.coverage > 0.0;
-                let mut share = 0.0;
-                if gear.coverage > 0.0 {
-                    share = self.uncovered(layer, imprint.i_0 + i, imprint.j_0 + j) * gear.coverage;
-                }
-                if partial == PartialLoad::Step {
-                    // As printed: a point is loaded and follows the gear, or is not and stays.
-                    share = if is_loaded { share.round() } else { 0.0 };
-                    h = h.min(ground);
-                }
-                if h < ground + MOST_SAG * imprint.spacing {
-                    let is_soil = share > 0.0 && !terrain.is_fixed(node);
-                    deepest = Some(deepest.unwrap_or(0.0_f64).max(if is_soil { z_0 - h } else { 0.0 }));
-                }
-                nodes[n] = Node { z: z_0 - h, height: h, share, depth: ground - h };
+        let stand = |site: &Site| {
+            let (z_0, ground) = (original[site.on_grid], terrain.height(site.on_grid));
+            let position = Vec3::from(site.position);
+            let rise = |d: Vec3| d.z - site.slope[0] * d.x - site.slope[1] * d.y;
+            let mut h = position.z + rise(turn * position + shift);
+            if has_shifts && let Some(shift) = followed.shift(site.owner) {
+                h += rise(shift.at(position));
             }
-        }
-        if !imprint.edges.is_empty() {
-            let own: Vec<f64> = nodes.iter().map(|node| node.depth).collect();
-            for edge in &imprint.edges {
-                nodes[edge.node].depth = edge.seen.iter().map(|&(m, weight)| weight * own[m]).sum();
+            match partial {
+                PartialLoad::Proportional => {
+                    Node { z: z_0 - h, height: h, share: site.share, depth: ground - h }
+                }
+                // As printed: a point is loaded and follows the gear, or is not and stays.
+                PartialLoad::Step => {
+                    let share = if h < ground { site.share.round() } else { 0.0 };
+                    let h = h.min(ground);
+                    Node { z: z_0 - h, height: h, share, depth: ground - h }
+                }
             }
+        };
+        let mut nodes: Vec<Node> = footing.sites.iter().map(stand).collect();
+        let seen: Vec<(u32, f64)> = footing.seen_depths(|site| nodes[site as usize].depth).collect();
+        for (site, depth) in seen {
+            nodes[site as usize].depth = depth;
         }
-        (nodes, deepest)
+        nodes
     }
 
-    /// Share of a node's cell that the layers below leave free.
-    #[inline(always)]
-    pub(crate) fn uncovered(&self, layer: usize, i: usize, j: usize) -> f64 {
-        let mut free = 1.0;
-        for below in &self.layers[..layer] {
-            let (a, b) = (i.wrapping_sub(below.i_0), j.wrapping_sub(below.j_0));
-            if a < below.n_x && b < below.n_y {
-                free *= 1.0 - below.nodes[b * below.n_x + a].coverage;
-            }
-        }
-        free
+    /// Deepest sinkage of soil under a layer \[m\].
+    fn deepest(&self, layer: usize, terrain: &Terrain, nodes: &[Node]) -> f64 {
+        let sag = MOST_SAG * self.layers[layer].spacing;
+        let sites = self.footings[layer].sites.iter().zip(nodes);
+        let is_soil = |(site, node): &(&Site, &Node)| {
+            node.share > 0.0
+                && node.height < terrain.height(site.on_grid) + sag
+                && !terrain.is_fixed(site.on_grid)
+        };
+        sites.filter(is_soil).fold(0.0, |deepest, (_, node)| node.z.max(deepest))
     }
 
-    /// F3 to F5: integrates over all polygons of a layer, with the fastest instructions of the machine, none of them fused: the
-    /// same bits everywhere.
+    /// F3 to F5: integrates over all polygons of a layer.
     fn load_layer(
         &self,
         layer: usize,
@@ -242,191 +209,117 @@ impl FootImprint {
         load: &mut FootLoad,
         listen: &mut impl FnMut(&LoadedPolygon),
     ) {
-        #[cfg(target_arch = "x86_64")]
-        {
-            #[target_feature(enable = "avx2")]
-            fn wide(
-                foot: &FootImprint,
-                layer: usize,
-                nodes: &[Node],
-                terrain: &Terrain,
-                integration: &Integration,
-                load: &mut FootLoad,
-                listen: &mut impl FnMut(&LoadedPolygon),
-            ) {
-                foot.polygons(layer, nodes, terrain, integration, load, listen);
+        let footing = &self.footings[layer];
+        let ground = Ground::new(terrain);
+        // Slack tracks have answered for theirs.
+        let may_follow = layer + 1 < self.layers.len() && !self.tracks.is_empty();
+        let mut batch = Batch::new();
+        let mut pressed: [Option<&Facet>; LANES] = [None; LANES];
+        for facet in &footing.facets {
+            let [a, b, c] = facet.sites.map(|site| &nodes[site as usize]);
+            let corners = Corners {
+                z: [a.z, b.z, c.z],
+                share: [a.share, b.share, c.share],
+                depth: [a.depth, b.depth, c.depth],
+                sag: facet.sag,
+            };
+            if corners.is_free() {
+                continue;
             }
-            if is_x86_feature_detected!("avx2") {
-                // SAFETY: the instructions were just found on this machine.
-                return unsafe { wide(self, layer, nodes, terrain, integration, load, listen) };
-            }
-        }
-        self.polygons(layer, nodes, terrain, integration, load, listen);
-    }
-
-    #[inline(always)]
-    fn polygons(
-        &self,
-        layer: usize,
-        nodes: &[Node],
-        terrain: &Terrain,
-        integration: &Integration,
-        load: &mut FootLoad,
-        listen: &mut impl FnMut(&LoadedPolygon),
-    ) {
-        let imprint = &self.layers[layer];
-        // Shoes are flat, wheels lie in the last layer.
-        let is_curved = integration.partial == PartialLoad::Proportional && layer + 1 == self.layers.len();
-        let most_sag = if is_curved { MOST_SAG * imprint.spacing } else { 0.0 };
-        let (n_x, n_grid) = (imprint.n_x, terrain.grid().n_x());
-        for j in 0..imprint.n_y.saturating_sub(1) {
-            for i in 0..n_x.saturating_sub(1) {
-                let n = j * n_x + i;
-                let cell = [nodes[n], nodes[n + 1], nodes[n + n_x], nodes[n + n_x + 1]];
-                if is_free(&cell, most_sag) {
-                    continue;
-                }
-                // Diagonals alternate so that no direction is preferred.
-                let (i_g, j_g) = (imprint.i_0 + i, imprint.j_0 + j);
-                let triangles: [[(usize, usize); 3]; 2] = if (i_g + j_g) % 2 == 0 {
-                    [[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]]
-                } else {
-                    [[(0, 0), (1, 0), (0, 1)], [(1, 0), (1, 1), (0, 1)]]
-                };
-                for corners in &triangles {
-                    let [p, q, r] = *corners;
-                    let at = [cell[p.0 + 2 * p.1], cell[q.0 + 2 * q.1], cell[r.0 + 2 * r.1]];
-                    if is_free(&at, most_sag) {
-                        continue;
-                    }
-                    // Written out: closures over arrays are not inlined into code for wider vectors.
-                    let [a, b, c] = &at;
-                    let on_window = |(a, b): (usize, usize)| (i + a, j + b);
-                    let corners_at = Corners {
-                        z: [a.z, b.z, c.z],
-                        share: [a.share, b.share, c.share],
-                        depth: [a.depth, b.depth, c.depth],
-                        sag: if is_curved {
-                            imprint.sag([on_window(p), on_window(q), on_window(r)])
-                        } else {
-                            [0.0; 3]
-                        },
-                    };
-                    if corners_at.is_free() {
-                        continue;
-                    }
-                    let on_grid = |(a, b): (usize, usize)| (j_g + b) * n_grid + i_g + a;
-                    let on_grid = [on_grid(p), on_grid(q), on_grid(r)];
-                    let answer = answer(terrain, &on_grid, &corners_at, integration);
-                    self.collect(layer, (i, j), corners, &at, answer, load, listen);
-                }
+            let sites = facet.sites.map(|site| &footing.sites[site as usize]);
+            let answer = ground.answer(&sites.map(|site| site.on_grid), &corners, integration);
+            let point = |site: &Site, node: &Node| {
+                let [x, y, _] = site.position;
+                [x - self.reference.x, y - self.reference.y, node.height - self.reference.z]
+            };
+            let follows = may_follow && self.tracks.iter().any(|track| track.owns(facet.owner));
+            pressed[batch.len()] = Some(facet);
+            let points = [point(sites[0], a), point(sites[1], b), point(sites[2], c)];
+            batch.push(&points, &corners, &answer, !follows);
+            if batch.is_full() {
+                self.collect(layer, nodes, integration, &mut batch, &pressed, load, listen);
             }
         }
+        self.collect(layer, nodes, integration, &mut batch, &pressed, load, listen);
     }
 
-    /// F5: force, position and stiffness of one polygon.
+    /// F4, F5: force, position and stiffness of a batch of `pressed` polygons; empties the batch.
     #[inline(always)]
     fn collect(
         &self,
         layer: usize,
-        (i, j): (usize, usize),
-        corners: &[(usize, usize); 3],
-        at: &[Node; 3],
-        answer: PolygonLoad,
+        nodes: &[Node],
+        integration: &Integration,
+        batch: &mut Batch,
+        pressed: &[Option<&Facet>; LANES],
         load: &mut FootLoad,
         listen: &mut impl FnMut(&LoadedPolygon),
     ) {
-        if answer.pressure <= 0.0 && answer.stiffness <= 0.0 {
-            return;
+        let spacing = self.layers[layer].spacing;
+        batch.answer(&integration.sub_triangles, spacing, &mut load.wrench, &mut load.stiffness);
+        for (n, facet) in pressed[..batch.len()].iter().enumerate() {
+            let (Some(facet), Some(polygon)) = (facet, batch.loaded(n)) else { continue };
+            let share = facet.sites.iter().map(|&site| nodes[site as usize].share).sum::<f64>() / 3.0;
+            listen(&LoadedPolygon {
+                layer,
+                owner: facet.owner,
+                force: polygon.normal * polygon.lift,
+                position: self.reference + polygon.arm,
+                pressure: if share > 0.0 { polygon.pressure / share } else { 0.0 },
+                area: share * spacing * spacing / 2.0,
+                normal: polygon.normal,
+                stiffness: polygon.stiffness,
+            });
         }
-        let imprint = &self.layers[layer];
-        let d = imprint.spacing;
-        let area = d * d / 2.0;
-        let point = |k: usize| {
-            let [x, y] = imprint.position(i + corners[k].0, j + corners[k].1);
-            Vec3::new(x, y, at[k].height)
-        };
-        let points = [point(0), point(1), point(2)];
-        let normal = (points[1] - points[0]).cross(&(points[2] - points[0])) / (d * d);
-        let force = normal * (answer.pressure * area); // P2 Eq. (7)
-        // P2 Eq. (8); a polygon that just touches answers from its middle.
-        let per_pressure = 1.0 / answer.pressure;
-        let [m_0, m_1, m_2] = answer.moment;
-        let weights = if answer.pressure > 0.0 {
-            [m_0 * per_pressure, m_1 * per_pressure, m_2 * per_pressure]
-        } else {
-            [1.0 / 3.0; 3]
-        };
-        let position = points[0] * weights[0] + points[1] * weights[1] + points[2] * weights[2];
-        let arm = position - self.reference;
-        load.wrench += Wrench { force, moment: arm.cross(&force) };
-        let stiffness = area * answer.stiffness.max(0.0);
-        let owners =
-            [0, 1, 2].map(|k| imprint.nodes[(j + corners[k].1) * imprint.n_x + i + corners[k].0].owner);
-        let held =
-            |k: usize| -> f64 { (0..3).filter(|&l| owners[l] == owners[k]).map(|l| at[l].share).sum() };
-        let owner = owners[(1..3).fold(0, |best, k| if held(k) > held(best) { k } else { best })];
-        // Slack tracks have answered for theirs.
-        let is_followed = layer + 1 < self.layers.len() && self.tracks.iter().any(|track| track.owns(owner));
-        if !is_followed {
-            let turned = arm.cross(&normal);
-            let w = Vector6::new(normal.x, normal.y, normal.z, turned.x, turned.y, turned.z);
-            for (column, &w_j) in w.iter().enumerate() {
-                let s_j = stiffness * w_j;
-                for row in 0..=column {
-                    load.stiffness[(row, column)] += s_j * w[row];
-                }
-            }
-        }
-        load.n_polygons += 1;
-        let share = at.iter().map(|c| c.share).sum::<f64>() / 3.0;
-        listen(&LoadedPolygon {
-            layer,
-            owner,
-            force,
-            position,
-            pressure: if share > 0.0 { answer.pressure / share } else { 0.0 },
-            area: share * area,
-            normal,
-            stiffness,
-        });
+        batch.clear();
     }
 }
 
-/// F3, F4: the ground's answer under one polygon.
-#[inline(always)]
-fn answer(
-    terrain: &Terrain,
-    on_grid: &[usize; 3],
-    corners: &Corners,
-    integration: &Integration,
-) -> PolygonLoad {
-    let (sub, partial) = (&integration.sub_triangles, integration.partial);
-    if on_grid.iter().all(|&node| terrain.is_fixed(node)) {
-        return integrate(sub, Stiff(Terrain::FIXED_STIFFNESS), corners, partial, 0.0); // P2 Eq. (4)
+/// What presses back.
+struct Ground<'a> {
+    terrain: &'a Terrain,
+    /// Values of the arrays per sinkage \[1/m\].
+    per_resolution: f64,
+}
+
+impl<'a> Ground<'a> {
+    fn new(terrain: &'a Terrain) -> Self {
+        Self { terrain, per_resolution: 1.0 / terrain.field().resolution() }
     }
-    let field = terrain.field();
-    let per_resolution = 1.0 / field.resolution();
-    let (elastic, contact) = match terrain.unloading() {
-        Unloading::Plastic { contact_distance } => (None, contact_distance),
-        Unloading::Elastic { stiffness } => {
-            (Some((stiffness, on_grid.map(|node| terrain.sinkage()[node]))), 0.0)
+
+    /// F3, F4: the ground's answer under one polygon.
+    #[inline(always)]
+    fn answer(&self, on_grid: &[usize; 3], corners: &Corners, integration: &Integration) -> Answer {
+        let Self { terrain, per_resolution } = *self;
+        let (sub, partial) = (&integration.sub_triangles, integration.partial);
+        if on_grid.iter().all(|&node| terrain.is_fixed(node)) {
+            return integrate(sub, Stiff(Terrain::FIXED_STIFFNESS), corners, partial, 0.0); // P2 Eq. (4)
         }
-    };
-    if field.is_per_node() {
-        let virgin = ThreeArrays { pressures: on_grid.map(|node| field.of_node(node)), per_resolution };
-        match elastic {
-            None => integrate(sub, virgin, corners, partial, contact),
-            Some((stiffness, residual)) => {
-                integrate(sub, Reloaded { virgin, stiffness, residual }, corners, partial, 0.0)
+        let field = terrain.field();
+        if field.is_per_node() {
+            let pressures = on_grid.map(|node| field.of_node(node));
+            self.soil(ThreeArrays { pressures, per_resolution }, on_grid, corners, integration)
+        } else {
+            let pressures = field.of_node(0);
+            self.soil(OneArray { pressures, per_resolution }, on_grid, corners, integration)
+        }
+    }
+
+    #[inline(always)]
+    fn soil(
+        &self,
+        virgin: impl Response,
+        on_grid: &[usize; 3],
+        corners: &Corners,
+        Integration { sub_triangles, partial }: &Integration,
+    ) -> Answer {
+        match self.terrain.unloading() {
+            Unloading::Plastic { contact_distance } => {
+                integrate(sub_triangles, virgin, corners, *partial, contact_distance)
             }
-        }
-    } else {
-        let virgin = OneArray { pressures: field.of_node(0), per_resolution };
-        match elastic {
-            None => integrate(sub, virgin, corners, partial, contact),
-            Some((stiffness, residual)) => {
-                integrate(sub, Reloaded { virgin, stiffness, residual }, corners, partial, 0.0)
+            Unloading::Elastic { stiffness } => {
+                let residual = on_grid.map(|node| self.terrain.sinkage()[node]);
+                integrate(sub_triangles, Reloaded { virgin, stiffness, residual }, corners, *partial, 0.0)
             }
         }
     }

@@ -34,14 +34,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod batch;
 pub mod contact;
 pub mod equilibrium;
+mod footing;
 pub mod gear;
 pub mod imprint;
 pub mod machine;
 pub mod mechanism;
 pub mod polygon;
 pub mod pressure;
+mod response;
 pub mod rolling_resistance;
 pub mod route;
 pub mod run;

@@ -46,15 +46,16 @@ impl Frozen {
                 }
             }
         }
-        let imprints = machine
-            .feet
-            .par_iter()
-            .enumerate()
-            .map(|(foot, gear)| {
-                let shapes = at.tracks.get(machine.slack_belts(foot)).unwrap_or_default();
-                gear.imprint_with(terrain, &poses[gear.body], travel, integration.partial, shapes)
-            })
-            .collect();
+        let imprints = on_all_feet(machine.feet.len(), |foot| {
+            let (gear, shapes) = (&machine.feet[foot], at.tracks.get(machine.slack_belts(foot)));
+            gear.imprint_with(
+                terrain,
+                &poses[gear.body],
+                travel,
+                integration.partial,
+                shapes.unwrap_or_default(),
+            )
+        });
         Ok(Self { at: at.clone(), poses, imprints, integration })
     }
 
@@ -106,16 +107,13 @@ impl Frozen {
             return;
         }
         let poses = machine.mechanism.poses(at);
-        at.tracks = self
-            .imprints
-            .par_iter()
-            .enumerate()
-            .flat_map_iter(|(foot, imprint)| {
-                let body = machine.feet[foot].body;
-                let moved = motion(&self.poses[body], &poses[body]);
-                imprint.tracks.iter().map(move |track| track.shape(terrain, &moved, share))
-            })
-            .collect();
+        let shapes = on_all_feet(self.imprints.len(), |foot| {
+            let body = machine.feet[foot].body;
+            let moved = motion(&self.poses[body], &poses[body]);
+            let tracks = self.imprints[foot].tracks.iter();
+            tracks.map(|track| track.shape(terrain, &moved, share)).collect::<Vec<_>>()
+        });
+        at.tracks = shapes.into_iter().flatten().collect();
     }
 
     /// Motion of a foot's body from where its imprint was drawn to a configuration nearby.
@@ -166,10 +164,9 @@ impl Frozen {
                 stiffness[(row, column)] -= (own[row] - forces[row]) / step;
             }
         }
-        let loads: Vec<FootLoad> = (0..machine.feet.len())
-            .into_par_iter()
-            .map(|foot| self.foot_load(foot, machine, terrain, &poses[machine.feet[foot].body], |_| ()))
-            .collect();
+        let loads = on_all_feet(machine.feet.len(), |foot| {
+            self.foot_load(foot, machine, terrain, &poses[machine.feet[foot].body], |_| ())
+        });
         for (foot, load) in loads.iter().enumerate() {
             let o = self.imprints[foot].reference;
             let mut t = Matrix6xX::zeros(n);
@@ -188,4 +185,13 @@ impl Frozen {
         }
         Balance { forces, stiffness }
     }
+}
+
+/// What `work` gives for each foot. Feet come in pairs, left and right, and differ along the machine: with two threads each takes a side.
+fn on_all_feet<T: Send>(n: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let by_side: Vec<usize> = (0..n).step_by(2).chain((1..n).step_by(2)).collect();
+    let done: Vec<T> = by_side.par_iter().map(|&foot| work(foot)).collect();
+    let mut feet: Vec<(usize, T)> = by_side.into_iter().zip(done).collect();
+    feet.sort_by_key(|&(foot, _)| foot);
+    feet.into_iter().map(|(_, done)| done).collect()
 }

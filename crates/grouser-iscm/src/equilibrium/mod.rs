@@ -164,10 +164,31 @@ pub enum NoEquilibrium {
 /// Pitch or roll beyond which a machine counts as turned over \[rad\].
 const TURNED_OVER: f64 = 1.0;
 
-/// Drawings whose whole way is gone, as most searches end within them.
+/// A way above which drawings say little about one another \[m, rad\].
+const FAR: f64 = 5e-3;
+/// Drawings of which most searches need no more.
 const TRUSTED_DRAWINGS: usize = 8;
 /// Least share of the way to a drawing's balance that is gone.
 const SMALLEST_SHARE: f64 = 1.0 / 64.0;
+/// Largest one.
+const LARGEST_SHARE: f64 = 2.0;
+
+/// Share of the `way` to go where the last `share` of the way `before` has led: Aitken's, as if the way through all degrees of freedom
+/// repeated itself by a constant factor. Far from rest it does not, and the whole way is gone.
+fn relaxed(share: f64, before: &[f64], way: &[f64]) -> f64 {
+    if before.is_empty() || before.iter().chain(way).any(|part| part.abs() > FAR) {
+        return 1.0;
+    }
+    let change: Vec<f64> = way.iter().zip(before).map(|(way, before)| way - before).collect();
+    match dot(before, &change) {
+        along if along < 0.0 => -share * along / dot(&change, &change),
+        _ => 2.0 * share,
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
 
 /// Finds the equilibrium near `from`; `travel` \[m\] is how far the wheels have rolled.
 pub fn equilibrium(
@@ -183,7 +204,8 @@ pub fn equilibrium(
     let mut change = f64::INFINITY;
     let mut changes: Vec<f64> = Vec::new();
     // Share of the way to the drawing's balance that is gone: less where drawings answer each other to and fro.
-    let mut share = 1.0_f64;
+    let (mut share, mut most) = (1.0_f64, LARGEST_SHARE);
+    let mut way_before = Vec::new();
     for n_drawings in 1..=settings.max_drawings {
         let frozen = Frozen::new(machine, terrain, &at, travel, integration.clone())?; // E1
         // Early drawings are poor: no use in solving them to the end.
@@ -200,10 +222,16 @@ pub fn equilibrium(
         let before = machine.mechanism.dofs(&at);
         let change_before = change;
         change = before.iter().zip(&q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let way: Vec<f64> = before.iter().zip(&q).map(|(a, b)| b - a).collect();
         if n_drawings > TRUSTED_DRAWINGS && change > 0.5 * change_before {
-            share = (0.5 * share).max(SMALLEST_SHARE);
+            // To and fro, or ever on.
+            let factor = if dot(&way_before, &way) < 0.0 { 0.5 } else { 2.0 };
+            most = (factor * share).clamp(SMALLEST_SHARE, LARGEST_SHARE);
         }
-        let gone: Vec<f64> = before.iter().zip(&q).map(|(a, b)| a + share * (b - a)).collect();
+        share = relaxed(share, &way_before, &way)
+            .clamp(SMALLEST_SHARE, if at.tracks.is_empty() { most } else { most.min(1.0) });
+        let gone: Vec<f64> = before.iter().zip(&way).map(|(a, way)| a + share * way).collect();
+        way_before = way;
         machine.mechanism.set_dofs(&mut at, &gone);
         frozen.carry_tracks(machine, terrain, &mut at, share);
         let at_stop: Vec<String> = stops.iter().map(|&d| machine.mechanism.dof_name(d).to_string()).collect();

@@ -170,7 +170,7 @@ impl Foot {
         for layer in &mut layers {
             layer.carry_edges(grid, &axle);
         }
-        let mut drawn = FootImprint { layers, reference: pose.translation.vector, tracks: Vec::new() };
+        let mut drawn = FootImprint::new(layers, pose.translation.vector, grid.n_x(), partial);
         for track in &mut tracks {
             track.find_touches(&drawn, terrain);
         }

@@ -183,10 +183,11 @@ impl Imprint {
         let heights = ground.heights();
         let at = |i: usize, j: usize| heights[(self.j_0 + j) * ground.n_x() + self.i_0 + i];
         let mut carried = Vec::new();
+        let is_near = self.is_near_gear();
         for j in 0..self.n_y {
             for i in 0..self.n_x {
                 let own = self.nodes[j * self.n_x + i];
-                if own.coverage >= HARDLY_COVERED {
+                if own.coverage >= HARDLY_COVERED || !is_near[j * self.n_x + i] {
                     continue;
                 }
                 let (mut sum, mut depth, mut slope, mut largest) = (0.0, 0.0, [0.0; 2], (0.0, own.owner));
@@ -230,10 +231,27 @@ impl Imprint {
         self.find_edges(axle);
     }
 
+    /// Which nodes have a neighbour that the gear covers, or are covered themselves.
+    fn is_near_gear(&self) -> Vec<bool> {
+        let mut is_near = vec![false; self.nodes.len()];
+        let covered = (0..self.nodes.len()).filter(|&n| self.nodes[n].coverage > 0.0);
+        for (i, j) in covered.map(|n| (n % self.n_x, n / self.n_x)) {
+            for row in j.saturating_sub(1)..(j + 2).min(self.n_y) {
+                let first = row * self.n_x;
+                is_near[first + i.saturating_sub(1)..first + (i + 2).min(self.n_x)].fill(true);
+            }
+        }
+        is_near
+    }
+
     /// Where the gear's edge runs between points, those that footprints leave out stay as high as the ground beside the rut: a gear
     /// that left them behind would still press there. They see the ground of their neighbours within the gear instead.
     fn find_edges(&mut self, axle: &Vec3) {
         let sideways = nalgebra::Vector2::new(axle.x, axle.y).normalize();
+        // Ruts have their walls beside the wheel.
+        let beside = AROUND.map(|(di, dj)| {
+            (di as f64 * sideways.x + dj as f64 * sideways.y).powi(2) / (di * di + dj * dj) as f64
+        });
         let within = |i: usize, j: usize| {
             if i < self.n_x && j < self.n_y { within(self.nodes[j * self.n_x + i].coverage) } else { 0.0 }
         };
@@ -251,10 +269,7 @@ impl Imprint {
                 let mut edge = Edge { node: n, seen: [(n, 0.0); 9] };
                 for (k, (di, dj)) in AROUND.into_iter().enumerate() {
                     let (a, b) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
-                    // Ruts have their walls beside the wheel.
-                    let beside = (di as f64 * sideways.x + dj as f64 * sideways.y).powi(2)
-                        / (di * di + dj * dj) as f64;
-                    let weight = within(a, b) * beside;
+                    let weight = within(a, b) * beside[k];
                     if k < 4 {
                         left -= weight;
                     }

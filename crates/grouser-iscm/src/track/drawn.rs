@@ -5,6 +5,7 @@ use nalgebra::{Matrix6, Vector6};
 
 use super::{Chain, Lay, Touch, TrackShape};
 use crate::contact::FootImprint;
+use crate::footing::uncovered;
 use crate::gear::{Belt, Wheel};
 use crate::mechanism::GRAVITY;
 use crate::pressure::interpolate;
@@ -147,7 +148,8 @@ impl DrawnTrack {
                         continue;
                     }
                     let (i_g, j_g) = (drawn.i_0 + i, drawn.j_0 + j);
-                    let area = gear.coverage * imprint.uncovered(layer, i_g, j_g) * drawn.spacing.powi(2);
+                    let area =
+                        gear.coverage * uncovered(&imprint.layers[..layer], i_g, j_g) * drawn.spacing.powi(2);
                     if area == 0.0 {
                         continue;
                     }

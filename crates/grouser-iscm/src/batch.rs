@@ -1,0 +1,414 @@
+//! Many polygons worked on together, number by number: F3 to F5 of `docs/theory/iscm.md`.
+//!
+//! Sums over polygons go by lanes of eight, whatever the instruction set, so that each gives the same bits.
+
+use grouser_geometry::Vec3;
+use nalgebra::Matrix6;
+
+use crate::contact::Wrench;
+use crate::polygon::{Answer, Corners, PolygonLoad, SubTriangles};
+use crate::response::KINKS;
+
+/// Polygons of a batch.
+pub(crate) const LANES: usize = 32;
+/// Partial sums that are carried side by side.
+const WIDTH: usize = 8;
+
+/// One number of each polygon.
+type Lane = [f64; LANES];
+const ZERO: Lane = [0.0; LANES];
+
+/// Polygons under one layer of running gear.
+pub(crate) struct Batch {
+    len: usize,
+    /// Most kinks of any of them.
+    n_kinks: usize,
+    is_curved: bool,
+    has_lines: bool,
+    z: [Lane; 3],
+    share: [Lane; 3],
+    depth: [Lane; 3],
+    sag: [Lane; 3],
+    /// Value at no sinkage and slope of the first line; where it bends and by how much.
+    line: [Lane; 2],
+    kinks: [[Lane; 2]; KINKS],
+    /// One where pressure is summed along lines, zero where sums were given.
+    on_lines: Lane,
+    /// One where the stiffness counts, zero where something else has answered for it.
+    counts: Lane,
+    /// Over the depth in which contact builds up \[1/m\].
+    per_contact: Lane,
+    /// Corners from the reference point, by axis \[m\].
+    corners: [[Lane; 3]; 3],
+    /// Means over the polygon, as in [`PolygonLoad`].
+    pressure: Lane,
+    stiffness: Lane,
+    moment: [Lane; 3],
+    /// What they come to, see [`Collected`].
+    collected: Collected,
+}
+
+/// Force and stiffness of each polygon.
+struct Collected {
+    /// Where the force acts, from the reference point \[m\].
+    arm: [Lane; 3],
+    /// Normal of the ground, scaled to a vertical part of one, and its moment, arm × normal \[m\].
+    normal: [Lane; 6],
+    /// Vertical force \[N\] and stiffness \[N/m\].
+    lift: Lane,
+    stiffness: Lane,
+    /// The stiffness that counts.
+    counted: Lane,
+}
+
+/// One loaded polygon of a batch.
+pub(crate) struct Loaded {
+    pub arm: Vec3,
+    pub normal: Vec3,
+    pub lift: f64,
+    pub pressure: f64,
+    pub stiffness: f64,
+}
+
+impl Batch {
+    pub fn new() -> Self {
+        Self {
+            len: 0,
+            n_kinks: 0,
+            is_curved: false,
+            has_lines: false,
+            z: [ZERO; 3],
+            share: [ZERO; 3],
+            depth: [ZERO; 3],
+            sag: [ZERO; 3],
+            line: [ZERO; 2],
+            kinks: [[ZERO; 2]; KINKS],
+            on_lines: ZERO,
+            counts: ZERO,
+            per_contact: ZERO,
+            corners: [[ZERO; 3]; 3],
+            pressure: ZERO,
+            stiffness: ZERO,
+            moment: [ZERO; 3],
+            collected: Collected {
+                arm: [ZERO; 3],
+                normal: [ZERO; 6],
+                lift: ZERO,
+                stiffness: ZERO,
+                counted: ZERO,
+            },
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    pub fn is_full(&self) -> bool {
+        self.len == LANES
+    }
+
+    /// Adds a polygon whose corners lie at `points` from the reference point \[m\]; its stiffness may not count.
+    #[inline(always)]
+    pub fn push(&mut self, points: &[[f64; 3]; 3], corners: &Corners, answer: &Answer, counts: bool) {
+        let n = self.len;
+        self.len += 1;
+        self.counts[n] = f64::from(u8::from(counts));
+        for k in 0..3 {
+            for axis in 0..3 {
+                self.corners[k][axis][n] = points[k][axis];
+            }
+        }
+        let (given, on_lines) = match answer {
+            Answer::Load(load) => (*load, 0.0),
+            Answer::OnLines { .. } => (PolygonLoad::default(), 1.0),
+        };
+        self.pressure[n] = given.pressure;
+        self.stiffness[n] = given.stiffness;
+        for k in 0..3 {
+            self.moment[k][n] = given.moment[k];
+        }
+        self.on_lines[n] = on_lines;
+        if let Answer::OnLines { lines, contact } = answer {
+            self.per_contact[n] = 1.0 / contact.max(1e-300);
+            self.has_lines = true;
+            self.is_curved |= !corners.sag.is_none();
+            for k in 0..3 {
+                self.z[k][n] = corners.z[k];
+                self.share[k][n] = corners.share[k];
+                self.depth[k][n] = corners.depth[k];
+                self.sag[k][n] = corners.sag.products[k];
+            }
+            self.line[0][n] = lines.c;
+            self.line[1][n] = lines.k;
+            self.n_kinks = self.n_kinks.max(lines.n_kinks);
+            for (kink, &(at, bend)) in self.kinks.iter_mut().zip(&lines.kinks[..lines.n_kinks]) {
+                kink[0][n] = at;
+                kink[1][n] = bend;
+            }
+        }
+    }
+
+    /// F3 to F5 over ground of `spacing` \[m\], with the widest vectors of the machine: adds force and moment, and the upper half of the
+    /// stiffness. Nothing is fused, so that each instruction set gives the same bits.
+    pub fn answer(
+        &mut self,
+        sub: &SubTriangles,
+        spacing: f64,
+        wrench: &mut Wrench,
+        stiffness: &mut Matrix6<f64>,
+    ) {
+        #[cfg(target_arch = "x86_64")]
+        {
+            #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
+            fn with_avx512(
+                batch: &mut Batch,
+                sub: &SubTriangles,
+                spacing: f64,
+                wrench: &mut Wrench,
+                stiffness: &mut Matrix6<f64>,
+            ) {
+                batch.integrate(sub);
+                batch.collect(spacing);
+                batch.add_to(wrench, stiffness);
+            }
+            #[target_feature(enable = "avx2")]
+            fn with_avx2(
+                batch: &mut Batch,
+                sub: &SubTriangles,
+                spacing: f64,
+                wrench: &mut Wrench,
+                stiffness: &mut Matrix6<f64>,
+            ) {
+                batch.integrate(sub);
+                batch.collect(spacing);
+                batch.add_to(wrench, stiffness);
+            }
+            let has_avx512 = is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512vl");
+            // SAFETY: the instructions were just found on this machine.
+            if has_avx512 {
+                return unsafe { with_avx512(self, sub, spacing, wrench, stiffness) };
+            }
+            if is_x86_feature_detected!("avx2") {
+                return unsafe { with_avx2(self, sub, spacing, wrench, stiffness) };
+            }
+        }
+        self.integrate(sub);
+        self.collect(spacing);
+        self.add_to(wrench, stiffness);
+    }
+
+    /// F3, F4: means over the polygons.
+    #[inline(always)]
+    fn integrate(&mut self, sub: &SubTriangles) {
+        if !self.has_lines {
+            return;
+        }
+        let per_centre = 1.0 / sub.centres().len() as f64;
+        let (mut z, mut g, mut p, mut slope) = (ZERO, ZERO, ZERO, ZERO);
+        for &[b_0, b_1, b_2] in sub.centres() {
+            for n in 0..LANES {
+                z[n] = b_0 * self.z[0][n] + b_1 * self.z[1][n] + b_2 * self.z[2][n];
+                g[n] = b_0 * self.depth[0][n] + b_1 * self.depth[1][n] + b_2 * self.depth[2][n];
+            }
+            if self.is_curved {
+                let (s_0, s_1, s_2) = (b_0 * b_1, b_1 * b_2, b_2 * b_0);
+                for n in 0..LANES {
+                    let below = s_0 * self.sag[0][n] + s_1 * self.sag[1][n] + s_2 * self.sag[2][n];
+                    z[n] += below;
+                    g[n] += below;
+                }
+            }
+            for n in 0..LANES {
+                p[n] = self.line[0][n] + self.line[1][n] * z[n];
+                slope[n] = self.line[1][n];
+            }
+            for [at, bend] in &self.kinks[..self.n_kinks] {
+                for n in 0..LANES {
+                    let beyond = z[n] - at[n];
+                    p[n] += bend[n] * if beyond > 0.0 { beyond } else { 0.0 };
+                    slope[n] += if beyond > 0.0 { bend[n] } else { 0.0 };
+                }
+            }
+            for n in 0..LANES {
+                let l_c = b_0 * self.share[0][n] + b_1 * self.share[1][n] + b_2 * self.share[2][n];
+                let share = l_c * self.on_lines[n] * per_centre;
+                let built_up = g[n] * self.per_contact[n];
+                let positive = if built_up > 0.0 { built_up } else { 0.0 };
+                let rising = if built_up > 0.0 && built_up < 1.0 { share * self.per_contact[n] } else { 0.0 };
+                let multiplier = share * if positive < 1.0 { positive } else { 1.0 };
+                let f = p[n] * multiplier;
+                self.pressure[n] += f;
+                self.moment[0][n] += f * b_0;
+                self.moment[1][n] += f * b_1;
+                self.moment[2][n] += f * b_2;
+                self.stiffness[n] += slope[n] * multiplier + p[n] * rising;
+            }
+        }
+    }
+
+    /// F5: forces, positions and stiffnesses over ground of `spacing` \[m\].
+    #[inline(always)]
+    fn collect(&mut self, spacing: f64) {
+        let per_square = 1.0 / (spacing * spacing);
+        let half_square = 0.5 * spacing * spacing;
+        let [p, q, r] = &self.corners;
+        let Collected { arm, normal, lift, stiffness, counted } = &mut self.collected;
+        for n in 0..LANES {
+            let a = [q[0][n] - p[0][n], q[1][n] - p[1][n], q[2][n] - p[2][n]];
+            let b = [r[0][n] - p[0][n], r[1][n] - p[1][n], r[2][n] - p[2][n]];
+            let u = [
+                (a[1] * b[2] - a[2] * b[1]) * per_square,
+                (a[2] * b[0] - a[0] * b[2]) * per_square,
+                (a[0] * b[1] - a[1] * b[0]) * per_square,
+            ];
+            // P2 Eq. (8); a polygon that just touches answers from its middle.
+            let pressure = self.pressure[n];
+            let per_pressure = 1.0 / pressure;
+            let weight = |moment: f64| if pressure > 0.0 { moment * per_pressure } else { 1.0 / 3.0 };
+            let (w_0, w_1, w_2) =
+                (weight(self.moment[0][n]), weight(self.moment[1][n]), weight(self.moment[2][n]));
+            let at = [
+                p[0][n] * w_0 + q[0][n] * w_1 + r[0][n] * w_2,
+                p[1][n] * w_0 + q[1][n] * w_1 + r[1][n] * w_2,
+                p[2][n] * w_0 + q[2][n] * w_1 + r[2][n] * w_2,
+            ];
+            let is_loaded = pressure > 0.0 || self.stiffness[n] > 0.0;
+            let area = if is_loaded { half_square } else { 0.0 };
+            lift[n] = pressure * area; // P2 Eq. (7)
+            for axis in 0..3 {
+                arm[axis][n] = at[axis];
+                normal[axis][n] = u[axis];
+            }
+            normal[3][n] = at[1] * u[2] - at[2] * u[1];
+            normal[4][n] = at[2] * u[0] - at[0] * u[2];
+            normal[5][n] = at[0] * u[1] - at[1] * u[0];
+            stiffness[n] = area * if self.stiffness[n] > 0.0 { self.stiffness[n] } else { 0.0 };
+            counted[n] = self.counts[n] * stiffness[n];
+        }
+        // Lanes without a polygon hold an old one.
+        lift[self.len..].fill(0.0);
+        counted[self.len..].fill(0.0);
+    }
+
+    /// Polygon `n` where it is loaded, after [`Batch::answer`].
+    #[inline(always)]
+    pub fn loaded(&self, n: usize) -> Option<Loaded> {
+        let Collected { arm, normal, lift, stiffness, .. } = &self.collected;
+        let vector = |lanes: &[Lane]| Vec3::new(lanes[0][n], lanes[1][n], lanes[2][n]);
+        (self.pressure[n] > 0.0 || self.stiffness[n] > 0.0).then(|| Loaded {
+            arm: vector(arm),
+            normal: vector(normal),
+            lift: lift[n],
+            pressure: self.pressure[n],
+            stiffness: stiffness[n],
+        })
+    }
+
+    /// Adds force, moment and the upper half of the stiffness.
+    #[inline(always)]
+    fn add_to(&mut self, wrench: &mut Wrench, total: &mut Matrix6<f64>) {
+        let Collected { normal, lift, counted, .. } = &self.collected;
+        for axis in 0..3 {
+            wrench.force[axis] += sum_of_products(&normal[axis], lift);
+            wrench.moment[axis] += sum_of_products(&normal[axis + 3], lift);
+        }
+        let mut scaled = ZERO;
+        for column in 0..6 {
+            for n in 0..LANES {
+                scaled[n] = counted[n] * normal[column][n];
+            }
+            for row in 0..=column {
+                total[(row, column)] += sum_of_products(&normal[row], &scaled);
+            }
+        }
+    }
+
+    /// Empties the batch.
+    pub fn clear(&mut self) {
+        for kink in &mut self.kinks[..self.n_kinks] {
+            kink[1] = ZERO;
+        }
+        (self.len, self.n_kinks, self.is_curved, self.has_lines) = (0, 0, false, false);
+        self.on_lines = ZERO;
+    }
+}
+
+/// Σ a b in a fixed order.
+#[inline(always)]
+fn sum_of_products(a: &Lane, b: &Lane) -> f64 {
+    let mut sums = [0.0; WIDTH];
+    for (a, b) in a.chunks_exact(WIDTH).zip(b.chunks_exact(WIDTH)) {
+        for n in 0..WIDTH {
+            sums[n] += a[n] * b[n];
+        }
+    }
+    ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::polygon::{PartialLoad, Sag, by_centres, integrate};
+    use crate::response::{OneArray, Response, Stiff};
+
+    /// Corners with kinks between them, partly covered, partly above the ground, curved.
+    fn corners() -> Vec<Corners> {
+        let mut all = Vec::new();
+        for (z, share, depth) in [
+            ([0.01, 0.031, 0.022], [1.0; 3], [0.01, 0.02, 0.01]),
+            ([0.01, 0.031, 0.022], [0.0, 1.0, 0.6], [-0.001, 0.003, 0.0005]),
+            ([-0.002, 0.004, 0.009], [1.0; 3], [-0.002, 0.004, 0.0009]),
+            ([0.13, 0.149, 0.16], [0.5, 1.0, 0.0], [4e-4, -1e-4, 2e-4]),
+        ] {
+            for sag in [[0.0; 3], [3e-4, -1e-4, 2e-4]] {
+                all.push(Corners { z, share, depth, sag: Sag::new(sag) });
+            }
+        }
+        all
+    }
+
+    fn agree<R: Response>(ground: R, contact: f64) {
+        for resolution in [1, 2, 3, 4, 5] {
+            let sub = SubTriangles::new(resolution);
+            let mut batch = Batch::new();
+            // Twice, as what an earlier batch held must not be seen.
+            for corners in [corners(), corners().split_off(1)] {
+                for corners in &corners {
+                    let answer = integrate(&sub, ground, corners, PartialLoad::Proportional, contact);
+                    batch.push(&[[0.0; 3], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0]], corners, &answer, true);
+                }
+                let (mut wrench, mut stiffness) = (Wrench::default(), Matrix6::zeros());
+                batch.answer(&sub, 0.1, &mut wrench, &mut stiffness);
+                let mut expected = [0.0; 3];
+                for (n, corners) in corners.iter().enumerate() {
+                    let exact = by_centres(&sub, ground, corners, PartialLoad::Proportional, contact);
+                    let near = |a: f64, b: f64, scale: f64| {
+                        assert!((a - b).abs() <= 1e-9 * scale, "{a} {b} {corners:?} {resolution}");
+                    };
+                    let scale = exact.pressure.max(exact.stiffness * 1e-3);
+                    near(batch.pressure[n], exact.pressure, scale);
+                    (0..3).for_each(|k| near(batch.moment[k][n], exact.moment[k], scale));
+                    near(batch.stiffness[n], exact.stiffness, exact.stiffness);
+                    // Over a triangle of 0.1 m the moment about x is Σ p y, that about y −Σ p x.
+                    let sums = [exact.pressure, 0.1 * exact.moment[2], -0.1 * exact.moment[1]];
+                    (0..3).for_each(|k| expected[k] += 0.005 * sums[k]);
+                }
+                batch.clear();
+                for (sum, expected) in [wrench.force.z, wrench.moment.x, wrench.moment.y].iter().zip(expected)
+                {
+                    assert!((sum - expected).abs() <= 1e-9 * expected.abs(), "{sum} {expected}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn many_at_a_time_equal_centre_by_centre() {
+        let pressures: Vec<f64> = (0..40).map(|k| 1e4 * f64::from(k) + 3e3 * f64::from(k * k % 7)).collect();
+        agree(OneArray { pressures: &pressures, per_resolution: 200.0 }, 1e-3);
+        agree(Stiff(1e9), 0.0);
+    }
+}
