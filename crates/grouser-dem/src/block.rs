@@ -8,8 +8,8 @@ use crate::quads;
 use crate::shared_grains::SharedGrains;
 use crate::slab::{Pair, Slab, SlabSums};
 use grouser_contact::{
-    BLOCK, Blocked, Body, Contact, ContactLaw, ContactLedger, Frame, Lanes, PairTable, Precision, Real,
-    RotationLaw, Vector,
+    BLOCK, Blocked, Body, Contact, ContactLaw, ContactLedger, Frame, Lanes, PairTable, Precision, Quaternion,
+    Real, RotationLaw, Vector,
 };
 
 /// What law `L` asks to know about orientations.
@@ -20,18 +20,51 @@ const fn turns_as_sphere<T: Real, L: ContactLaw<T>>() -> bool {
     <L::Rotation as RotationLaw<T>>::IS_SPHERE
 }
 
-/// A contact remembers one vector of the contact's scalars; known when compiled.
+/// The two types are one; known when compiled.
+#[inline(always)]
+fn is_same<A: 'static, B: 'static>() -> bool {
+    std::any::TypeId::of::<A>() == std::any::TypeId::of::<B>()
+}
+
+/// The law asks for orientations as quaternions; known when compiled.
+#[inline(always)]
+fn has_quaternions<T: Real, L: ContactLaw<T>>() -> bool {
+    is_same::<FrameOf<T, L>, Quaternion<T>>()
+}
+
+/// A contact remembers one vector and no more; known when compiled.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn remembers_a_vector<T: Real, L: ContactLaw<T>>() -> bool {
-    std::any::TypeId::of::<L::Memory>() == std::any::TypeId::of::<Vector<T>>()
+    is_same::<L::Memory, Vector<T>>() || is_same::<L::Memory, (Vector<T>, ())>()
 }
 
-/// Starts of three arrays of lanes that follow each other.
+/// A contact remembers a vector and a number; known when compiled.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn three_lanes<U>(first: *mut U) -> [*mut U; 3] {
-    [first, first.wrapping_add(BLOCK), first.wrapping_add(2 * BLOCK)]
+fn remembers_four_numbers<T: Real, L: ContactLaw<T>>() -> bool {
+    is_same::<L::Memory, (Vector<T>, T)>()
+}
+
+/// Starts of `N` arrays of lanes that follow each other.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn lanes_from<U, const N: usize>(first: *mut U) -> [*mut U; N] {
+    let mut lanes = [first; N];
+    for n in 1..N {
+        lanes[n] = first.wrapping_add(n * BLOCK);
+    }
+    lanes
+}
+
+/// Starts of the lanes of a vector and a number, in the order in which a contact remembers the four numbers.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn lanes_of_four<T: Real, U>(block: *mut <(Vector<T>, T) as Blocked<T>>::Block) -> [*mut U; 4] {
+    // SAFETY: places of fields, of which nothing is read.
+    let (vector, number) = unsafe { (&raw mut (*block).0, &raw mut (*block).1) };
+    let ([x, y, z], number) = (lanes_from(vector.cast()), number.cast());
+    if std::mem::offset_of!((Vector<T>, T), 1) == 0 { [number, x, y, z] } else { [x, y, z, number] }
 }
 
 /// One component for each contact of a block. Inputs are overwritten by outputs where both have three components.
@@ -48,8 +81,12 @@ pub(crate) struct Block<T: Real, L: ContactLaw<T>> {
     spin: [[Lanes<T>; 3]; 2],
     /// Orientations, where the law asks for them.
     frame: [<FrameOf<T, L> as Blocked<T>>::Block; 2],
-    /// Distance of the contact point from each centre [m] (output).
+    /// Distance of the contact point from each centre [m].
     arm: [Lanes<T>; 2],
+    /// R* [m].
+    effective_radius: Lanes<T>,
+    /// m* [kg].
+    effective_mass: Lanes<T>,
     memory: <L::Memory as Blocked<T>>::Block,
     normal_modulus: Lanes<T>,
     tangential_modulus: Lanes<T>,
@@ -97,6 +134,8 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             spin: Default::default(),
             frame: Default::default(),
             arm: Default::default(),
+            effective_radius: Default::default(),
+            effective_mass: Default::default(),
             memory: Default::default(),
             normal_modulus: Default::default(),
             tangential_modulus: Default::default(),
@@ -135,6 +174,9 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         self.gather::<P, HAS_QUADS>(places, slab, input);
         // Groups of 16 lanes: a constant trip count that every vector width divides.
         for group in 0..places.len().div_ceil(16) {
+            self.touch(group * 16, places.len());
+        }
+        for group in 0..places.len().div_ceil(16) {
             self.respond::<LEDGER>(group * 16, places.len(), &input.law, input.time_step);
         }
         self.scatter::<P, HAS_QUADS>(places, slab, input.grains);
@@ -146,6 +188,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
     pub fn look<P: Precision<Real = T>, const HAS_QUADS: bool>(
         &mut self,
         pairs: &[Pair],
+        memory: &[L::Memory],
         mut next: usize,
         from: u32,
         touching: &mut u64,
@@ -158,6 +201,8 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
                 let places = quads::Places::<Q> {
                     spheres: input.grains.spheres().cast(),
                     shifts: input.shifts.as_ptr().cast(),
+                    memory: memory.as_ptr().cast(),
+                    memory_bytes: size_of::<L::Memory>(),
                 };
                 let [x, y, z] = &mut self.difference;
                 let [first, second] = &mut self.radius;
@@ -222,9 +267,13 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
                         [quads::start(x), quads::start(y), quads::start(z)],
                         [quads::start(x2), quads::start(y2), quads::start(z2)],
                     ],
+                    frame: [(&raw mut self.frame[0]).cast(), (&raw mut self.frame[1]).cast()],
                 };
-                // SAFETY: as in `look`; a block has room for all places, which are places of pairs.
-                unsafe { quads::gather::<Q>(&slab.pairs, places, input.grains.spheres().cast(), &lanes) };
+                let gather = if has_quaternions::<T, L>() { quads::gather::<Q, true> } else { quads::gather::<Q, false> };
+                let (spheres, orientations) = (input.grains.spheres().cast(), input.grains.all_orientations());
+                // SAFETY: as in `look`; a block has room for all places, which are places of pairs; a block of quaternions is
+                // four arrays of lanes.
+                unsafe { gather(&slab.pairs, places, spheres, orientations, &lanes) };
             });
             is_done = gathered.is_some();
         }
@@ -234,7 +283,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             }
         }
         self.recall::<P, HAS_QUADS>(places, slab);
-        if FrameOf::<T, L>::IS_TRACKED {
+        if FrameOf::<T, L>::IS_TRACKED && !(is_done && has_quaternions::<T, L>()) {
             self.gather_frames(places, slab, input);
         }
         if input.table.n_materials() > 1 {
@@ -261,9 +310,21 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         if HAS_QUADS && remembers_a_vector::<T, L>() {
             let lanes: *mut T = (&raw mut self.memory).cast();
             let recalled = in_quads!(P, Q => {
-                let lanes: [*mut <Q as Precision>::Real; 3] = three_lanes(lanes.cast());
+                let lanes: [*mut <Q as Precision>::Real; 3] = lanes_from(lanes.cast());
                 // SAFETY: as in `gather`; memory is vectors, a block of them three arrays of lanes, and `Q` is `P`.
-                unsafe { quads::recall::<Q>(slab.memory.as_ptr().cast(), places, lanes) };
+                unsafe { quads::recall::<Q, 3>(slab.memory.as_ptr().cast(), places, lanes) };
+            });
+            if recalled.is_some() {
+                return;
+            }
+        }
+        #[cfg(target_arch = "x86_64")]
+        if HAS_QUADS && remembers_four_numbers::<T, L>() {
+            let block = (&raw mut self.memory).cast();
+            let recalled = in_quads!(P, Q => {
+                let lanes: [*mut <Q as Precision>::Real; 4] = lanes_of_four::<T, _>(block);
+                // SAFETY: as above, with a vector and a number each.
+                unsafe { quads::recall::<Q, 4>(slab.memory.as_ptr().cast(), places, lanes) };
             });
             if recalled.is_some() {
                 return;
@@ -287,10 +348,23 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         if HAS_QUADS && remembers_a_vector::<T, L>() {
             let lanes: *mut T = (&raw mut self.memory).cast();
             let remembered = in_quads!(P, Q => {
-                let lanes: [*mut <Q as Precision>::Real; 3] = three_lanes(lanes.cast());
+                let lanes: [*mut <Q as Precision>::Real; 3] = lanes_from(lanes.cast());
                 let lanes = lanes.map(<*mut _>::cast_const);
                 // SAFETY: as in `recall`; a pair is in a block once.
-                unsafe { quads::remember::<Q>(slab.memory.as_mut_ptr().cast(), places, lanes) };
+                unsafe { quads::remember::<Q, 3>(slab.memory.as_mut_ptr().cast(), places, lanes) };
+            });
+            if remembered.is_some() {
+                return;
+            }
+        }
+        #[cfg(target_arch = "x86_64")]
+        if HAS_QUADS && remembers_four_numbers::<T, L>() {
+            let block = (&raw mut self.memory).cast();
+            let remembered = in_quads!(P, Q => {
+                let lanes: [*mut <Q as Precision>::Real; 4] = lanes_of_four::<T, _>(block);
+                let lanes = lanes.map(<*mut _>::cast_const);
+                // SAFETY: as above.
+                unsafe { quads::remember::<Q, 4>(slab.memory.as_mut_ptr().cast(), places, lanes) };
             });
             if remembered.is_some() {
                 return;
@@ -337,9 +411,10 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         }
     }
 
-    /// The contact law on lanes `from..from + 16`, of which those below `used` hold contacts.
+    /// Where and how deep the grains of lanes `from..from + 16` touch. Those from `used` on hold leftovers, whose results nobody
+    /// may see.
     #[inline(always)]
-    fn respond<const LEDGER: bool>(&mut self, from: usize, used: usize, law: &L, time_step: T) {
+    fn touch(&mut self, from: usize, used: usize) {
         let lanes =
             |group: &[Lanes<T>; 3], k: usize| Vector::new(group[0].0[k], group[1].0[k], group[2].0[k]);
         // Read here: read inside the loop it might be what a lane's store has changed, and nothing would become a vector.
@@ -354,12 +429,34 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             let edge = reach + distance;
             let (lengths, sums) = (distance * edge, reach * total_mass);
             let inverse = T::ONE / (lengths * sums);
-            let normal = difference * (inverse * edge * sums);
+            let normal = (difference * (inverse * edge * sums)).to_array();
             let overlap = self.excess.0[k] * (inverse * distance * sums);
-            let effective_radius = radii[0] * radii[1] * (inverse * lengths * total_mass);
-            let effective_mass = masses[0] * masses[1] * (inverse * lengths * reach);
+            for axis in 0..3 {
+                self.difference[axis].0[k] = normal[axis];
+            }
+            self.excess.0[k] = overlap;
+            self.effective_radius.0[k] = radii[0] * radii[1] * (inverse * lengths * total_mass);
+            self.effective_mass.0[k] = masses[0] * masses[1] * (inverse * lengths * reach);
             let half = T::from_f64(0.5);
-            let arms = [radii[0] - half * overlap, radii[1] - half * overlap];
+            self.arm[0].0[k] = radii[0] - half * overlap;
+            self.arm[1].0[k] = radii[1] - half * overlap;
+            let depth = overlap - largest_overlap * radii[0].min(radii[1]);
+            let depth = if k < used { depth } else { T::ZERO };
+            self.depth.0[k] = depth.max(self.depth.0[k]);
+        }
+    }
+
+    /// The contact law on lanes `from..from + 16`, of which those below `used` hold contacts.
+    #[inline(always)]
+    fn respond<const LEDGER: bool>(&mut self, from: usize, used: usize, law: &L, time_step: T) {
+        let lanes =
+            |group: &[Lanes<T>; 3], k: usize| Vector::new(group[0].0[k], group[1].0[k], group[2].0[k]);
+        let half = T::from_f64(0.5);
+        for k in from..from + 16 {
+            let (radii, masses) =
+                ([self.radius[0].0[k], self.radius[1].0[k]], [self.mass[0].0[k], self.mass[1].0[k]]);
+            let normal = lanes(&self.difference, k);
+            let arms = [self.arm[0].0[k], self.arm[1].0[k]];
             let (spin_first, spin_second) = (lanes(&self.spin[0], k), lanes(&self.spin[1], k));
             let body = |b: usize, spin| Body {
                 arm: arms[b],
@@ -370,12 +467,12 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             let bodies = [body(0, spin_first), body(1, spin_second)];
             let centres = lanes(&self.velocity, k);
             let contact = Contact {
-                overlap,
+                overlap: self.excess.0[k],
                 normal,
                 velocity: law.rotation().velocity_at_contact(normal, centres, &bodies),
                 normal_spin: half * (spin_first + spin_second).dot(normal),
-                effective_radius,
-                effective_mass,
+                effective_radius: self.effective_radius.0[k],
+                effective_mass: self.effective_mass.0[k],
                 time_step,
             };
             let pair = grouser_contact::PairProperties {
@@ -402,17 +499,16 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
                     self.ledger[5].0[k] += or_nothing(couples.spent);
                 }
             }
-            let force = normal * response.normal_force + response.tangential_force;
-            let couple = normal.cross(response.tangential_force);
-            let (force, couple) = (force.to_array(), couple.to_array());
+            let force = (normal * response.normal_force + response.tangential_force).to_array();
             for axis in 0..3 {
                 self.difference[axis].0[k] = force[axis];
-                self.velocity[axis].0[k] = couple[axis];
             }
-            self.arm[0].0[k] = arms[0];
-            self.arm[1].0[k] = arms[1];
-            let depth = overlap - largest_overlap * radii[0].min(radii[1]);
-            self.depth.0[k] = or_nothing(depth).max(self.depth.0[k]);
+            if turns_as_sphere::<T, L>() {
+                let couple = normal.cross(response.tangential_force).to_array();
+                for axis in 0..3 {
+                    self.velocity[axis].0[k] = couple[axis];
+                }
+            }
             if LEDGER {
                 let energy = response.energy;
                 let terms = [
@@ -438,6 +534,24 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
     ) {
         self.remember::<P, HAS_QUADS>(places, slab);
         if !turns_as_sphere::<T, L>() {
+            #[cfg(target_arch = "x86_64")]
+            if HAS_QUADS {
+                let [fx, fy, fz] = &mut self.difference;
+                let [[ax, ay, az], [bx, by, bz]] = &mut self.spin;
+                let scattered = in_quads!(P, Q => {
+                    let forces = [quads::start(fx), quads::start(fy), quads::start(fz)];
+                    let first = [quads::start(ax), quads::start(ay), quads::start(az)];
+                    let second = [quads::start(bx), quads::start(by), quads::start(bz)];
+                    let loads = grains.loads().cast();
+                    // SAFETY: as below.
+                    unsafe {
+                        quads::scatter_torques::<Q>(&slab.pairs, places, loads, forces, [first, second]);
+                    }
+                });
+                if scattered.is_some() {
+                    return;
+                }
+            }
             for (k, &place) in places.iter().enumerate() {
                 let [i, j] = slab.pairs[place as usize].grains();
                 let at = |lanes: &[Lanes<T>; 3]| Vector::new(lanes[0].0[k], lanes[1].0[k], lanes[2].0[k]);

@@ -199,7 +199,8 @@ fn pass<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool, const LEDGE
                 waiting.n = 0;
             }
             let pairs = &slab.pairs[from..end];
-            next = block.look::<P, HAS_QUADS>(pairs, next, from as u32, &mut touching, &mut waiting, input);
+            let (memory, from) = (&slab.memory, from as u32);
+            next = block.look::<P, HAS_QUADS>(pairs, memory, next, from, &mut touching, &mut waiting, input);
         }
         // Pairs that have just parted forget.
         let mut parted = slab.touched[word] & !touching;

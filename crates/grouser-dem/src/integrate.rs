@@ -146,13 +146,17 @@ impl<T: Real> Motion<T> {
         let (spheres, loads, accelerations) = grains.range(range);
         let mut watch = Watch::default();
         #[cfg(target_arch = "x86_64")]
-        if set != InstructionSet::Baseline && self.is_verlet() && self.turning.is_spherical() {
+        let is_held = self.rotation == Rotation::Fixed;
+        let is_about_axis = self.turning.axis().is_some() && !is_held;
+        let has_loops = is_held || is_about_axis || self.turning.is_spherical();
+        if set != InstructionSet::Baseline && self.is_verlet() && has_loops {
             let advanced = in_quads!(P, Q => {
-                let advance = match (orientations.is_some(), self.rotation) {
-                    (false, Rotation::Free) => quads::advance::<Q, false, false>,
-                    (false, Rotation::Fixed) => quads::advance::<Q, false, true>,
-                    (true, Rotation::Free) => quads::advance::<Q, true, false>,
-                    (true, Rotation::Fixed) => quads::advance::<Q, true, true>,
+                let advance = match (orientations.is_some(), is_held, is_about_axis) {
+                    (false, false, _) => quads::advance::<Q, false, false, false>,
+                    (false, true, _) => quads::advance::<Q, false, true, false>,
+                    (true, true, _) => quads::advance::<Q, true, true, false>,
+                    (true, false, false) => quads::advance::<Q, true, false, false>,
+                    (true, false, true) => quads::advance::<Q, true, false, true>,
                 };
                 // SAFETY: `Q` is `P`, so that these are the same types; `detect` found AVX2 on this machine.
                 unsafe {

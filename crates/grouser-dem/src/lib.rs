@@ -45,6 +45,7 @@ mod cell_grid;
 mod domain;
 mod energy;
 mod error;
+mod euler;
 mod failure;
 mod force_pass;
 mod grains;

@@ -65,6 +65,12 @@ impl<P: Precision> SharedGrains<P> {
         self.loads
     }
 
+    /// Start of the orientations; null where none are kept.
+    #[inline(always)]
+    pub fn all_orientations(&self) -> *const Orientation {
+        self.orientations
+    }
+
     /// Orientation of one grain as (i, j, k, real part). Laws that ask for it make the bed keep orientations.
     #[inline(always)]
     pub fn quaternion(&self, grain: u32) -> [f64; 4] {

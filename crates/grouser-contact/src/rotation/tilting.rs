@@ -23,10 +23,10 @@ use serde::{Deserialize, Serialize};
 /// The tilting law for grains of one shape; `IS_ROUND` where some figure of it is a circle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tilting<const IS_ROUND: bool = false> {
-    /// Half sides h over the distance from the centre to the contact point [-].
-    half: [f64; 3],
-    /// 1 where two axes belong to the same circle, else 0; read where `IS_ROUND`.
-    circles: [[f64; 3]; 3],
+    /// Half sides h over the distance from the centre to the contact point [-] of the axes that end in a face, else 0.
+    flat: [f64; 3],
+    /// The same of the axes that lie in a circle, which is one figure of a cylinder or a ball; read where `IS_ROUND`.
+    round: [f64; 3],
     /// Width w of the passage between corners [-], never zero.
     width: f64,
     /// 1/(π × impact times of the build-up) [-]; [`AT_ONCE`] without.
@@ -51,8 +51,8 @@ impl<const IS_ROUND: bool> Default for Tilting<IS_ROUND> {
     /// A ball: no more than a place to read a checkpoint into.
     fn default() -> Self {
         Self {
-            half: [1.0; 3],
-            circles: [[1.0; 3]; 3],
+            flat: [0.0; 3],
+            round: [1.0; 3],
             width: 1.0,
             following: 1.0,
             lift_damping: 1.0,
@@ -77,9 +77,12 @@ impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
             let longest = longest_arm(&half, &circles);
             half = half.map(|side| side / longest);
         }
+        let lies_in_circle = |i: usize| (0..3).any(|j| j != i && circles[i][j] > 0.0);
+        let sides_where =
+            |wanted: bool| std::array::from_fn(|i| if lies_in_circle(i) == wanted { half[i] } else { 0.0 });
         Ok(Self {
-            half,
-            circles,
+            flat: sides_where(false),
+            round: sides_where(true),
             width: settings.smoothing_rad.max(JUMP),
             following: (1.0 / (std::f64::consts::PI * settings.build_up)).min(AT_ONCE),
             lift_damping: settings.lift_damping,
@@ -90,7 +93,7 @@ impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
 
     /// Half sides of the body over the distance from the centre to the contact point [-].
     pub fn half_sides(&self) -> [f64; 3] {
-        self.half
+        std::array::from_fn(|i| self.flat[i] + self.round[i])
     }
 
     /// Vector from the touching corner to the centre [m] of a grain turned by `frame`, in the world frame. `normal` points from
@@ -102,28 +105,22 @@ impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
         // Written out: closures over arrays are not inlined into the vectorised pass.
         let [e1, e2, e3] = frame.axes();
         let (n1, n2, n3) = (e1.dot(normal), e2.dot(normal), e3.dot(normal));
-        let (sign1, sign2, sign3) = if IS_ROUND {
-            let (a, b, c) = (n1 * n1, n2 * n2, n3 * n3);
-            let [first, second, third] = &self.circles;
-            (
-                n1 / self.length(first, a, b, c),
-                n2 / self.length(second, a, b, c),
-                n3 / self.length(third, a, b, c),
-            )
-        } else {
-            let steepness = T::from_f64(1.0 / self.width);
-            let sign = |n: T| (n * steepness).max(-T::ONE).min(T::ONE);
-            (sign(n1), sign(n2), sign(n3))
+        let flat = |i: usize, n: T| {
+            let most = T::from_f64(self.flat[i]);
+            (n * T::from_f64(self.flat[i] / self.width)).max(-most).min(most)
         };
-        let half = |i: usize| T::from_f64(self.half[i]) * arm;
-        e1 * (sign1 * half(0)) + e2 * (sign2 * half(1)) + e3 * (sign3 * half(2))
-    }
-
-    /// Length of the normal's part in the figure of one axis, not below the width of the passage; squares of its components given.
-    #[inline(always)]
-    fn length<T: Real>(&self, shares: &[f64; 3], a: T, b: T, c: T) -> T {
-        let of = |i: usize| T::from_f64(shares[i]);
-        (a * of(0) + b * of(1) + c * of(2)).sqrt().max(T::from_f64(self.width))
+        let (mut along1, mut along2, mut along3) = (flat(0, n1), flat(1, n2), flat(2, n3));
+        if IS_ROUND {
+            // Squares of the normal's part in the circle: 1 for its axes, else 0.
+            let in_circle = |i: usize| T::from_f64(if self.round[i] > 0.0 { 1.0 } else { 0.0 });
+            let squared = n1 * n1 * in_circle(0) + n2 * n2 * in_circle(1) + n3 * n3 * in_circle(2);
+            let inverse = T::ONE / squared.sqrt().max(T::from_f64(self.width));
+            let round = |i: usize, n: T| n * (T::from_f64(self.round[i]) * inverse);
+            along1 += round(0, n1);
+            along2 += round(1, n2);
+            along3 += round(2, n3);
+        }
+        (e1 * along1 + e2 * along2 + e3 * along3) * arm
     }
 
     /// Torque [N·m] of `force` [N] on a grain turned by `frame`, in the world frame; arguments as for [`Tilting::lever`].
@@ -140,6 +137,8 @@ impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
 
     /// The part F̄ [N] of the normal force that turns the bodies, `before` a step ago: dF̄/dt = (F_N − F̄)/τ with τ some times
     /// π √(m*/k), k being the secant stiffness; F̄ ≤ F_N, and F̄ = 0 at first touch. Beside it the dashpot on the lift [N·s/m].
+    ///
+    /// Everything times m*: the root √(m* k) is the one that the dashpot of the normal force takes, and one division remains.
     #[inline(always)]
     fn built_up<T: Real>(
         &self,
@@ -150,13 +149,13 @@ impl<const IS_ROUND: bool> Tilting<IS_ROUND> {
     ) -> (T, T) {
         let contact_radius = (contact.effective_radius * contact.overlap).sqrt();
         let stiffness = hertz_stiffness(pair.normal_modulus, contact_radius);
-        let frequency = (stiffness / contact.effective_mass).sqrt();
-        // Δt/τ
-        let step = frequency * (contact.time_step * T::from_f64(self.following));
-        let most = T::from_f64(self.largest_damping) / contact.time_step;
-        let rate = (pair.damping * frequency * T::from_f64(self.lift_damping)).min(most);
-        let dashpot = contact.effective_mass * rate;
-        (((before + normal_force * step) / (T::ONE + step)).min(normal_force), dashpot)
+        let mass = contact.effective_mass;
+        let impedance = (mass * stiffness).sqrt();
+        // m* Δt/τ
+        let step = impedance * (contact.time_step * T::from_f64(self.following));
+        let most = mass * (T::from_f64(self.largest_damping) / contact.time_step);
+        let dashpot = (pair.damping * impedance * T::from_f64(self.lift_damping)).min(most);
+        (((before * mass + normal_force * step) / (mass + step)).min(normal_force), dashpot)
     }
 
     /// Levers of both bodies. From the second one the normal is opposite, and so is its lever: both are given for `normal`.

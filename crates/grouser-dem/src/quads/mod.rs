@@ -6,9 +6,11 @@
 //! closure stands between a loop and its instructions: either would leave a call for every four contacts.
 
 mod advance;
+mod four;
 mod memory;
 mod octet;
 mod quad;
+mod turn;
 
 pub(crate) use advance::advance;
 pub(crate) use memory::{recall, remember};
@@ -16,9 +18,10 @@ pub(crate) use memory::{recall, remember};
 use crate::force_pass::Waiting;
 use crate::slab::Pair;
 use grouser_contact::{BLOCK, F32, F64, Lanes, Load, Mixed, Precision, Sphere};
+use grouser_geometry::Orientation;
 use octet::{Octet, Two};
 use quad::{NarrowsTo, Quad};
-use std::arch::x86_64::{__m128, __m256, __m256d};
+use std::arch::x86_64::{__m128, __m256, __m256d, _MM_HINT_T0, _mm_prefetch, _mm256_loadu_pd};
 
 /// Precisions and the registers that hold four of their scalars.
 pub(crate) trait Quads: Precision {
@@ -49,6 +52,9 @@ impl Quads for F32 {
 pub(crate) struct Places<Q: Quads> {
     pub spheres: *const Sphere<Q>,
     pub shifts: *const [Q::Coordinate; 4],
+    /// What the pairs remember, which is fetched early, and the size of that in bytes; nothing is read here.
+    pub memory: *const u8,
+    pub memory_bytes: usize,
 }
 
 /// Lanes that [`look`] fills.
@@ -63,6 +69,8 @@ pub(crate) struct MotionLanes<T> {
     pub mass: [*mut T; 2],
     pub velocity: [*mut T; 3],
     pub spin: [[*mut T; 3]; 2],
+    /// Orientations (i, j, k, real part): four arrays of lanes that follow each other.
+    pub frame: [*mut T; 2],
 }
 
 /// Start of a lane array, whatever scalar the compiler believes it to hold; callers know that it is `U`.
@@ -115,6 +123,12 @@ pub(crate) unsafe fn look<Q: Quads>(
                 value.narrowed().packed(mask).store(lane.add(n));
             }
             waiting.append_four(mask, from + next as u32);
+            let (start, end) = (from as usize + next, from as usize + next + 4);
+            let mut line = start * places.memory_bytes;
+            while line < end * places.memory_bytes {
+                _mm_prefetch::<_MM_HINT_T0>(places.memory.wrapping_add(line).cast());
+                line += 64;
+            }
             *touching |= (mask as u64) << next;
             next += 4;
         }
@@ -139,15 +153,16 @@ unsafe fn row<Q: Quads>(
     }
 }
 
-/// Fills lanes 0.. with the motion of the pairs at `at`.
+/// Fills lanes 0.. with the motion, and with the orientations if `HAS_FRAMES`, of the pairs at `at`.
 ///
 /// # Safety
-/// As [`look`]; there are at most [`BLOCK`] pairs.
+/// As [`look`]; there are at most [`BLOCK`] pairs; with `HAS_FRAMES` there is an orientation for each sphere.
 #[target_feature(enable = "avx2")]
-pub(crate) unsafe fn gather<Q: Quads>(
+pub(crate) unsafe fn gather<Q: Quads, const HAS_FRAMES: bool>(
     pairs: &[Pair],
     at: &[u32],
     spheres: *const Sphere<Q>,
+    orientations: *const Orientation,
     lanes: &MotionLanes<Q::Real>,
 ) {
     debug_assert!(at.len() <= BLOCK);
@@ -156,10 +171,12 @@ pub(crate) unsafe fn gather<Q: Quads>(
         let mut k = 0;
         while k < at.len() {
             let last = at.len() - 1;
-            let [first_a, second_a] = motions(pairs, at[k], spheres);
-            let [first_b, second_b] = motions(pairs, at[last.min(k + 1)], spheres);
-            let [first_c, second_c] = motions(pairs, at[last.min(k + 2)], spheres);
-            let [first_d, second_d] = motions(pairs, at[last.min(k + 3)], spheres);
+            let grains = |n: usize| pairs.get_unchecked(at[last.min(k + n)] as usize).grains();
+            let [a, b, c, d] = [grains(0), grains(1), grains(2), grains(3)];
+            let [first_a, second_a] = motions(a, spheres);
+            let [first_b, second_b] = motions(b, spheres);
+            let [first_c, second_c] = motions(c, spheres);
+            let [first_d, second_d] = motions(d, spheres);
             let [[x, y, z, mass], spin] = Q::Narrow::columns_of_eight([first_a, first_b, first_c, first_d]);
             let [[x2, y2, z2, mass2], spin2] =
                 Q::Narrow::columns_of_eight([second_a, second_b, second_c, second_d]);
@@ -172,22 +189,74 @@ pub(crate) unsafe fn gather<Q: Quads>(
                 spin[axis].store(lanes.spin[0][axis].add(k));
                 spin2[axis].store(lanes.spin[1][axis].add(k));
             }
+            if HAS_FRAMES {
+                for body in 0..2 {
+                    let row = |grain: u32| _mm256_loadu_pd(orientations.add(grain as usize).cast());
+                    let rows = [row(a[body]), row(b[body]), row(c[body]), row(d[body])];
+                    for (component, column) in __m256d::transposed(rows).into_iter().enumerate() {
+                        Q::Narrow::of_doubles(column).store(lanes.frame[body].add(component * BLOCK + k));
+                    }
+                }
+            }
             k += 4;
         }
     }
 }
 
-/// Where the velocities of the two grains of a pair begin.
+/// Where the velocities of two grains begin.
 #[target_feature(enable = "avx2")]
 #[inline]
-unsafe fn motions<Q: Quads>(pairs: &[Pair], place: u32, spheres: *const Sphere<Q>) -> [*const Q::Real; 2] {
+unsafe fn motions<Q: Quads>([first, second]: [u32; 2], spheres: *const Sphere<Q>) -> [*const Q::Real; 2] {
     // SAFETY: by the caller's promise.
     unsafe {
-        let [first, second] = pairs.get_unchecked(place as usize).grains();
         [
             (&raw const (*spheres.add(first as usize)).velocity).cast(),
             (&raw const (*spheres.add(second as usize)).velocity).cast(),
         ]
+    }
+}
+
+/// Adds the lanes of forces, to the second grain with the opposite sign, and of the torques on each to the loads of the
+/// grains of the pairs at `at`.
+///
+/// # Safety
+/// As [`scatter`].
+#[target_feature(enable = "avx2")]
+pub(crate) unsafe fn scatter_torques<Q: Quads>(
+    pairs: &[Pair],
+    at: &[u32],
+    loads: *mut Load<Q::Real>,
+    forces: [*mut Q::Real; 3],
+    torques: [[*mut Q::Real; 3]; 2],
+) {
+    // SAFETY: by the caller's promise; loads are two groups of four numbers.
+    unsafe {
+        for k in (0..at.len()).step_by(4) {
+            let force = rows::<Q>(forces, k);
+            let torque = [rows::<Q>(torques[0], k), rows::<Q>(torques[1], k)];
+            for n in 0..(at.len() - k).min(4) {
+                let [near, far] = pairs.get_unchecked(at[k + n] as usize).grains();
+                let near = loads.add(near as usize).cast();
+                Q::Both::load(near).plus(Q::Both::joined(force[n], torque[0][n])).store(near);
+                let far = loads.add(far as usize).cast();
+                Q::Both::load(far).plus(Q::Both::joined(force[n].negated(), torque[1][n])).store(far);
+            }
+        }
+    }
+}
+
+/// Four vectors, each followed by zero, from the lanes `k..k + 4` of their components.
+#[target_feature(enable = "avx2")]
+#[inline]
+unsafe fn rows<Q: Quads>([x, y, z]: [*mut Q::Real; 3], k: usize) -> [Q::Narrow; 4] {
+    // SAFETY: by the caller's promise.
+    unsafe {
+        Q::Narrow::transposed([
+            Q::Narrow::load(x.add(k)),
+            Q::Narrow::load(y.add(k)),
+            Q::Narrow::load(z.add(k)),
+            Q::Narrow::splat(Q::Real::default()),
+        ])
     }
 }
 

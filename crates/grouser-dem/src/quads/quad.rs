@@ -33,6 +33,10 @@ pub(crate) trait Quad: Copy {
     unsafe fn store_as_rows(columns: [Self; 3], rows: [*mut Self::Scalar; 4]);
     /// Columns of the eight numbers that follow each of four pointers.
     unsafe fn columns_of_eight(rows: [*const Self::Scalar; 4]) -> [[Self; 4]; 2];
+    /// The nearest numbers to four in double precision.
+    unsafe fn of_doubles(doubles: __m256d) -> Self;
+    /// The same numbers in double precision.
+    unsafe fn doubles(self) -> __m256d;
 }
 
 /// Narrowing of four numbers; the identity where both are alike.
@@ -196,6 +200,16 @@ impl Quad for __m256d {
             ]
         }
     }
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    unsafe fn of_doubles(doubles: __m256d) -> Self {
+        doubles
+    }
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    unsafe fn doubles(self) -> __m256d {
+        self
+    }
 }
 
 impl Quad for __m128 {
@@ -324,6 +338,16 @@ impl Quad for __m128 {
                 ],
             ]
         }
+    }
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    unsafe fn of_doubles(doubles: __m256d) -> Self {
+        _mm256_cvtpd_ps(doubles)
+    }
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    unsafe fn doubles(self) -> __m256d {
+        _mm256_cvtps_pd(self)
     }
 }
 
