@@ -91,6 +91,23 @@ fn arms_equal_the_closed_form_over_a_full_turn() {
 }
 
 #[test]
+fn a_scale_shortens_both_arms() {
+    for (aspect_ratio, scale) in [(0.05, 0.1), (0.5, 0.1), (1.0, 0.1), (0.3, 0.7)] {
+        let law = law(GrainShape::Planes([PlaneShape::Rectangle { aspect_ratio, scale }; 3]), 1e-9);
+        for step in 0..360 {
+            let angle = f64::to_radians(0.25 + f64::from(step));
+            for i in 0..3 {
+                let found = arms(&law, i, angle, &some_quaternion(step));
+                let expected = closed_form(aspect_ratio, angle).map(|arm| scale * arm);
+                for part in 0..2 {
+                    assert!((found[part] - expected[part]).abs() < 1e-9, "{found:?} against {expected:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn the_normal_arm_changes_sign_at_the_tilting_angle() {
     for aspect_ratio in [0.05, 0.1, 0.25, 0.5, 0.75, 1.0] {
         let law = angular(aspect_ratio);
