@@ -3,8 +3,8 @@
 use super::Row;
 use super::bodies::{space, wall};
 use grouser_contact::{
-    GrainInertia, GrainShape, HertzMindlin, Interaction, Material, PairTable, PlaneShape, PlaneTilting,
-    Quaternion, Rotating, RotationLaw, Sphere, Tail, Tilting, TiltingSettings, Vector,
+    ArmNormalisation, GrainInertia, GrainShape, HertzMindlin, Interaction, Material, PairTable, PlaneShape,
+    PlaneTilting, Quaternion, Rotating, RotationLaw, Sphere, Tail, Tilting, TiltingSettings, Vector,
 };
 use grouser_dem::{Bed, BedSettings, Failure, sphere};
 use grouser_geometry::{Orientation, Vec3};
@@ -18,7 +18,6 @@ const REST: (&str, &str) = ("angular grains at rest", "rest");
 
 const SAND: Material = Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 2600.0 };
 const RADIUS: f64 = 0.01;
-type Angular<const IS_ROUND: bool> = Rotating<HertzMindlin<false, false>, Tilting<IS_ROUND>>;
 
 fn tilting<const IS_ROUND: bool>(shape: GrainShape, smoothing_rad: f64) -> Tilting<IS_ROUND> {
     Tilting::new(&TiltingSettings { smoothing_rad, ..TiltingSettings::of(shape) }).expect("sound")
@@ -47,6 +46,16 @@ fn orientation<L: grouser_contact::ContactLaw<f64>>(bed: &Bed<L>) -> Orientation
 
 /// l_N and l_T over r of plane `i` at `angle`, in a frame turned by `world`.
 fn arms(law: &Tilting, i: usize, angle: f64, world: &Orientation) -> [f64; 2] {
+    arms_of(|frame, normal, force| law.torque(frame, normal, force, 1.0), i, angle, world)
+}
+
+/// The same of a law that gives the torque of a force under a normal.
+fn arms_of(
+    torque: impl Fn(&Quaternion<f64>, Vector<f64>, Vector<f64>) -> Vector<f64>,
+    i: usize,
+    angle: f64,
+    world: &Orientation,
+) -> [f64; 2] {
     let [j, k] = [[1, 2], [0, 2], [0, 1]][i];
     let (along, up) = (Vec3::ith(j, 1.0), Vec3::ith(k, 1.0));
     let axis = along.cross(&up);
@@ -54,7 +63,7 @@ fn arms(law: &Tilting, i: usize, angle: f64, world: &Orientation) -> [f64; 2] {
     let frame = Quaternion(turned.coords.into());
     let narrow = |v: Vec3| Vector::new(v.x, v.y, v.z);
     let (normal, along, axis) = (narrow(world * up), narrow(world * along), narrow(world * axis));
-    let of = |force| law.torque(&frame, normal, force, 1.0).dot(axis);
+    let of = |force| torque(&frame, normal, force).dot(axis);
     [-of(normal), of(along)]
 }
 
@@ -103,6 +112,27 @@ pub fn arms_and_sign_change() -> Vec<Row> {
         let expected = (1.0 / aspect_ratio).atan().to_degrees();
         let what = format!("sign change of the normal arm, A = {aspect_ratio}");
         rows.push(Row::absolute(ARMS, what, "°", low.to_degrees(), (expected, 1e-4)));
+    }
+    for (aspect_ratio, scale) in [(0.05, 1.0), (0.05, 0.1), (1.0, 0.1)] {
+        let shape = GrainShape::Planes([PlaneShape::Rectangle { aspect_ratio, scale }; 3]);
+        let settings = TiltingSettings { smoothing_rad: 1e-4, ..TiltingSettings::of(shape) };
+        let law = PlaneTilting::new(&settings).expect("sound");
+        let mut worst = 0.0_f64;
+        for i in 0..3 {
+            for step in 0..720 {
+                let angle = f64::to_radians(0.25 + 0.5 * f64::from(step));
+                let world =
+                    Orientation::from_euler_angles(0.1 * f64::from(step), 1.3, 0.07 * f64::from(step));
+                let torque = |frame: &Quaternion<f64>, normal: Vector<f64>, force: Vector<f64>| {
+                    law.torque(frame, normal, force.dot(normal), force, 1.0)
+                };
+                let (found, expected) = (arms_of(torque, i, angle, &world), closed_form(aspect_ratio, angle));
+                worst = (0..2).map(|part| (found[part] - scale * expected[part]).abs()).fold(worst, f64::max);
+            }
+        }
+        let what =
+            format!("largest deviation, three rectangles for themselves, A = {aspect_ratio}, s = {scale}");
+        rows.push(Row::absolute(ARMS, what, "r", worst, (0.0, 1e-6)));
     }
     // r cos(arctan A + θ), r sin(arctan A + θ) of an inscribed bar at A = 0.5 and 10°, from a table.
     let bar = tilting(GrainShape::Bar { aspect_ratio: 0.5 }, 1e-4);
@@ -252,23 +282,46 @@ pub fn rest_and_extremes() -> Vec<Row> {
     rows.push(Row::absolute(REST, "turn of a grain alone in 10⁶ steps", "rad", turned, (0.0, 1e-6)));
 
     let circle = GrainShape::Planes([PlaneShape::Circle { scale: 0.1 }; 3]);
-    let shapes = [
-        ("A = 0.05", GrainShape::Angular { aspect_ratio: 0.05 }),
-        ("A = 1", GrainShape::Cube),
-        ("s = 0.1", circle),
+    // Bodies within the sphere: arms of a long side are not scaled up again to reach it.
+    let (small, root) = (0.05, 0.05_f64.sqrt());
+    let rectangle = |aspect_ratio, scale| PlaneShape::Rectangle { aspect_ratio, scale };
+    let within = |planes| {
+        let settings = TiltingSettings::of(GrainShape::Planes(planes));
+        let settings = TiltingSettings { arms: ArmNormalisation::LongSide, ..settings };
+        Tilting::new(&settings).expect("sound")
+    };
+    let scale = 0.1 / root;
+    let angular = within([rectangle(root, 0.1), rectangle(small, scale), rectangle(root, scale)]);
+    let bodies: [(&str, Tilting<true>); 5] = [
+        ("A = 0.05", tilting(GrainShape::Angular { aspect_ratio: small }, 5e-3)),
+        ("A = 1", tilting(GrainShape::Cube, 5e-3)),
+        ("circles, s = 0.1", tilting(circle, 5e-3)),
+        ("A = 1, s = 0.1", within([rectangle(1.0, 0.1); 3])),
+        ("A = 0.05, s from 0.1", angular),
     ];
-    for (name, shape) in shapes {
-        for degrees in [0.0_f64, 60.0] {
+    let themselves = |scale| {
+        let shape = GrainShape::Planes([rectangle(small, scale); 3]);
+        PlaneTilting::new(&TiltingSettings::of(shape)).expect("sound")
+    };
+    for degrees in [0.0_f64, 60.0] {
+        let friction = degrees.to_radians().tan();
+        let mut row = |name: &str, missed: f64| {
             let what = format!("energy missed, twelve neighbours, {name}, φ = {degrees}°");
-            let missed = squeezed(tilting(shape, 5e-3), degrees.to_radians().tan());
-            rows.push(Row::absolute(REST, what, "-", missed, (0.0, 0.01)));
+            rows.push(Row::absolute(REST, what, "-", missed, (0.0, 5e-5)));
+        };
+        for (name, law) in bodies {
+            row(name, squeezed(law, friction));
+        }
+        for scale in [0.1, 1.0] {
+            let name = format!("three rectangles, A = 0.05, s = {scale}");
+            row(&name, squeezed(themselves(scale), friction));
         }
     }
     rows
 }
 
 /// Twelve grains rush onto one in their middle from all sides; what the ledger misses over the kinetic energy at the start.
-fn squeezed(rotation: Tilting<true>, friction: f64) -> f64 {
+fn squeezed<R: RotationLaw<f64>>(rotation: R, friction: f64) -> f64 {
     let golden = 0.5 * (1.0 + 5_f64.sqrt());
     let mut places = vec![Vec3::zeros()];
     for (a, b) in [(1.0, golden), (1.0, -golden), (-1.0, golden), (-1.0, -golden)] {
@@ -285,7 +338,7 @@ fn squeezed(rotation: Tilting<true>, friction: f64) -> f64 {
     }
     let between = Interaction { restitution: 0.5, friction };
     let table = PairTable::new(&[SAND], Tail::CutCorrected, |_, _| between).expect("sound");
-    let law: Angular<true> = Rotating { forces: HertzMindlin, rotation };
+    let law = Rotating { forces: HertzMindlin::<false, false>, rotation };
     let mut bed = Bed::new(spheres, BedSettings { has_ledger: true, ..space() }, table, law).expect("sound");
     bed.grains_mut().turn_randomly(5);
     let begun = bed.energy().stored();
