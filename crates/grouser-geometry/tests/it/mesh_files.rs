@@ -287,7 +287,7 @@ proptest! {
                 match kind {
                     0 => bytes[at] = b"0123456789-.e, \n$*\"S"[*byte as usize % 20],
                     1 => bytes[at] = *byte,
-                    2 => { bytes.remove(at); }
+                    2 if bytes.len() > 1 => { bytes.remove(at); }
                     3 => bytes.insert(at, b'9'),
                     _ => bytes.truncate(at.max(1)),
                 }
