@@ -14,8 +14,8 @@ use crate::stiffness_rows::StiffnessRows;
 pub(crate) enum Elements {
     Linear(BlockSet<3, 1>),
     Quadratic(BlockSet<9, 4>),
-    /// Four-node elements of laws that are linear in the displacements; the blocks are asked for inverted elements alone.
-    Assembled(StiffnessRows, BlockSet<3, 1>),
+    /// Elements of laws that are linear in the displacements; the elements themselves are asked for inverted ones alone.
+    Assembled(StiffnessRows, Box<Elements>),
 }
 
 /// Internal forces of the nodes, of the last call of [`Elements::update`].
@@ -45,18 +45,19 @@ impl NodeForces<'_> {
 }
 
 impl Elements {
-    /// Ten-node elements keep their blocks: 27 and more blocks of stiffness a node are more bytes than the elements' constants.
+    /// Elements of a mesh; laws that are linear in the displacements get one assembled stiffness.
     pub fn new(mesh: &TetrahedralMesh, laws: &[Law], is_averaged: bool) -> Self {
-        let is_linear_law = laws.iter().all(|law| matches!(law, Law::SmallStrain(_)));
-        match mesh.order {
-            ElementOrder::Quadratic => Self::Quadratic(BlockSet::new(mesh, laws, false)),
-            ElementOrder::Linear if is_linear_law && !is_averaged => {
-                let undeformed = vec![Vec3::zeros(); mesh.nodes.len()];
-                let states = ElementStates::new(mesh, laws, &undeformed, false);
-                Self::Assembled(StiffnessRows::new(assemble(&states, &[])), BlockSet::new(mesh, laws, false))
-            }
+        let blocks = match mesh.order {
             ElementOrder::Linear => Self::Linear(BlockSet::new(mesh, laws, is_averaged)),
+            ElementOrder::Quadratic => Self::Quadratic(BlockSet::new(mesh, laws, false)),
+        };
+        // Averages around nodes reach further than an element.
+        if is_averaged || !laws.iter().all(|law| matches!(law, Law::SmallStrain(_))) {
+            return blocks;
         }
+        let undeformed = vec![Vec3::zeros(); mesh.nodes.len()];
+        let states = ElementStates::new(mesh, laws, &undeformed, false);
+        Self::Assembled(StiffnessRows::new(assemble(&states, &[])), Box::new(blocks))
     }
 
     /// Computes the internal forces of the displacements [m]; returns the power of the viscous stress [W]. An assembled stiffness
@@ -76,7 +77,7 @@ impl Elements {
     /// Looks for inverted elements where [`Self::update`] does not.
     pub fn refuse_inversion(&mut self, displacement: &[Vec3]) -> Result<(), Inversion> {
         match self {
-            Self::Assembled(_, set) => set.update(displacement, None).map(|_| ()),
+            Self::Assembled(_, elements) => elements.update(displacement, None).map(|_| ()),
             Self::Linear(_) | Self::Quadratic(_) => Ok(()),
         }
     }
@@ -109,6 +110,37 @@ impl Elements {
             Self::Linear(set) => set.is_worth_threads(),
             Self::Quadratic(set) => set.is_worth_threads(),
             Self::Assembled(rows, _) => rows.is_worth_threads(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Formulation, Material};
+    use grouser_geometry::box_mesh;
+
+    #[test]
+    fn assembled_stiffness_gives_the_forces_of_its_elements() {
+        let linear = box_mesh(Vec3::new(1.0, 0.5, 0.2), [4, 3, 2]);
+        for mesh in [linear.to_quadratic(), linear] {
+            let law = Material::hooke(1100.0, 20e6, 0.45).elasticity.law(Formulation::BodyAttached);
+            let mut assembled = Elements::new(&mesh, &[law], false);
+            let Elements::Assembled(_, elements) = &assembled else { panic!("its law is linear") };
+            let mut elements = elements.clone();
+            let wave = |x: &Vec3| 1e-3 * Vec3::new((7.0 * x.y).sin(), x.x * x.z, (5.0 * x.x).cos());
+            let displacement: Vec<Vec3> = mesh.nodes.iter().map(wave).collect();
+            let velocity: Vec<Vec3> = displacement.iter().map(|u| 3.0 * u.yzx()).collect();
+            let viscosity = || Some(Viscosity { velocity: &velocity, beta: 0.1 });
+            let powers =
+                [&mut assembled, &mut *elements].map(|e| e.update(&displacement, viscosity()).unwrap());
+            assert!((powers[0] / powers[1] - 1.0).abs() < 1e-10, "{powers:?}");
+            let largest =
+                (0..displacement.len()).map(|n| elements.node_forces().of(n).norm()).fold(0.0, f64::max);
+            for n in 0..displacement.len() {
+                let missed = (assembled.node_forces().of(n) - elements.node_forces().of(n)).norm();
+                assert!(missed < 1e-11 * largest, "node {n}: {missed} of {largest}");
+            }
         }
     }
 }

@@ -6,6 +6,7 @@ mod energy;
 mod indentation;
 mod motion;
 mod patch;
+mod ring;
 mod stiffness;
 mod tube;
 
@@ -94,6 +95,7 @@ fn short() -> Result<Vec<Row>, VerificationError> {
         stiffness::rows()?,
         motion::rows()?,
         tube::rows()?,
+        ring::rows()?,
         beam::rows()?,
         bar::rows()?,
         energy::rows()?,
