@@ -59,7 +59,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         for n_elements in [6_000, 24_000, 72_000] {
             let pattern = LugPattern::Alternating { count: 20 };
             let size = "165/65R13".to_owned();
-            let tread = TireTread { size, wall_thickness: 0.016, groove_depth: 0.015, pattern, n_elements };
+            let tread = TireTread {
+                size,
+                rim_width: 0.127,
+                wall_thickness: 0.016,
+                groove_depth: 0.015,
+                pattern,
+                n_elements,
+            };
             statics("tread under 0.14 MPa", tread.mesh()?, "rim", Some(("inner", 0.14e6)))?;
         }
     }

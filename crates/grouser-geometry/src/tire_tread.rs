@@ -1,4 +1,4 @@
-//! Lugged tire treads from a size code: a wall bent from bead to bead, with lugs on its crown.
+//! Lugged tire treads from a size code: a wall that bulges from bead to bead, with lugs on its crown.
 //!
 //! ```text
 //!        lug ▁▁      ▁▁         axis of the tire: y; the wall's section lies in the half plane x > 0, z = 0 and turns
@@ -9,7 +9,7 @@
 //!       rim             rim
 //! ```
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use serde::{Deserialize, Serialize};
 
@@ -44,6 +44,8 @@ pub enum LugPattern {
 pub struct TireTread {
     /// Size code such as `165/65R13`.
     pub size: String,
+    /// Distance between the flanges of the rim [m], that of the beads' outer faces; the section of a tire is wider and bulges.
+    pub rim_width: f64,
     /// Thickness of the wall [m].
     pub wall_thickness: f64,
     /// Height of the lugs above the wall [m].
@@ -77,6 +79,21 @@ pub enum TireError {
         /// Height of the section [m].
         height: f64,
     },
+    /// The beads of the wall do not fit between the flanges, or the wall would not bulge.
+    #[error(
+        "rim width {rim} m does not suit a section {width} m wide with a wall of {wall} m: expected {least:.4} to {width} m; usual \
+         cause: inches or millimetres; a 165/65R13 is measured on a rim of 5 inches, 0.127 m"
+    )]
+    RimWidth {
+        /// Width of the rim [m].
+        rim: f64,
+        /// Width of the section [m].
+        width: f64,
+        /// Thickness of the wall [m].
+        wall: f64,
+        /// Smallest width that is accepted [m].
+        least: f64,
+    },
     /// Too few elements for the pattern.
     #[error(
         "{n_elements} tetrahedra are too few for this tread: expected at least {least}, four cells around the tire for each lug; ask for more elements or fewer lugs"
@@ -89,12 +106,26 @@ pub enum TireError {
     },
 }
 
-/// Cells along the wall from bead to bead: side wall, crown, side wall.
-const SIDE_CELLS: usize = 5;
-const CROWN_CELLS: usize = 10;
+/// Cells along one side wall and along the crown, finest first; the crown has an even number, for two halves.
+const CELLS_ALONG: [[usize; 2]; 2] = [[5, 10], [4, 8]];
 /// Cells across the wall and across a lug.
 const WALL_CELLS: usize = 1;
 const LUG_CELLS: usize = 1;
+/// Width of the crown over the inner width of the section [-].
+const CROWN_SHARE: f64 = 0.8;
+
+/// How a tread is divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Cells {
+    /// Along one side wall.
+    side: usize,
+    /// Along the crown.
+    crown: usize,
+    /// Around the tire.
+    around: usize,
+    /// Lugs on each half; 1 where there are none.
+    n_lugs: usize,
+}
 
 impl TireSize {
     /// Reads a size code: width in mm, aspect ratio in per cent, rim diameter in inches.
@@ -131,30 +162,24 @@ impl TireTread {
         if !(wall > 0.0 && groove > 0.0 && wall + groove < 0.5 * height && 2.0 * wall < 0.5 * size.width) {
             return Err(TireError::Thickness { wall, groove, height });
         }
-        let along = 2 * SIDE_CELLS + CROWN_CELLS;
-        // Half of the crown carries lugs, the whole of a smooth one.
-        let (n_lugs, share) = match self.pattern {
-            LugPattern::Smooth => (1, 1.0),
-            LugPattern::Alternating { count } => (count.max(1), 0.5),
-        };
-        let per_slice = 6.0 * ((along * WALL_CELLS) as f64 + share * (CROWN_CELLS * LUG_CELLS) as f64);
-        // Four cells for each pitch at least, and whole half-pitches.
-        let step = 4 * n_lugs;
-        let around = ((self.n_elements as f64 / per_slice / step as f64).round() as usize) * step;
-        let least = (step as f64 * per_slice) as usize;
-        if around == 0 {
-            return Err(TireError::TooFewElements { n_elements: self.n_elements, least });
+        let rim_limits = [(2.0 * CROWN_SHARE - 1.0) * (size.width - 2.0 * wall) + 2.0 * wall, size.width];
+        if !(rim_limits[0] <= self.rim_width && self.rim_width <= rim_limits[1]) {
+            let (rim, width, least) = (self.rim_width, size.width, rim_limits[0]);
+            return Err(TireError::RimWidth { rim, width, wall, least });
         }
+        let section = self.cells()?;
+        let Cells { side, crown, around, .. } = section;
         let is_lug = |s: usize, a: usize| {
-            let Some(crown) = s.checked_sub(SIDE_CELLS).filter(|&c| c < CROWN_CELLS) else { return false };
+            let Some(place) = s.checked_sub(side).filter(|&place| place < crown) else { return false };
             match self.pattern {
                 LugPattern::Smooth => true,
                 LugPattern::Alternating { .. } => {
-                    let half_pitch = around / (2 * n_lugs);
-                    (a / half_pitch + usize::from(crown >= CROWN_CELLS / 2)).is_multiple_of(2)
+                    let half_pitch = around / (2 * section.n_lugs);
+                    (a / half_pitch + usize::from(place >= crown / 2)).is_multiple_of(2)
                 }
             }
         };
+        let along = 2 * side + crown;
         let lattice = Lattice { cells: [along, around, WALL_CELLS + LUG_CELLS], is_closed: true };
         let keep = |[s, a, layer]: [usize; 3]| layer < WALL_CELLS || is_lug(s, a);
         let map = |[s, a, layer]: [usize; 3]| {
@@ -163,7 +188,7 @@ impl TireTread {
             } else {
                 wall + groove * (layer - WALL_CELLS) as f64 / LUG_CELLS as f64
             };
-            let [radius, y] = self.section(size, s, depth);
+            let [radius, y] = self.section(size, [side, crown], s, depth);
             let angle = TAU * (a % around) as f64 / around as f64;
             Vec3::new(radius * angle.cos(), y, radius * angle.sin())
         };
@@ -172,27 +197,59 @@ impl TireTread {
         Ok(mesh)
     }
 
+    /// The division for the number of elements asked for.
+    fn cells(&self) -> Result<Cells, TireError> {
+        // Half of the crown carries lugs, the whole of a smooth one.
+        let (n_lugs, share) = match self.pattern {
+            LugPattern::Smooth => (1, 1.0),
+            LugPattern::Alternating { count } => (count.max(1), 0.5),
+        };
+        // Four cells for each pitch at least, and whole half-pitches.
+        let step = 4 * n_lugs;
+        let per_slice = |[side, crown]: [usize; 2]| {
+            6.0 * (((2 * side + crown) * WALL_CELLS) as f64 + share * (crown * LUG_CELLS) as f64)
+        };
+        let divided = CELLS_ALONG.map(|cells| {
+            let around =
+                ((self.n_elements as f64 / per_slice(cells) / step as f64).round() as usize).max(1) * step;
+            let [side, crown] = cells;
+            (around as f64 * per_slice(cells), Cells { side, crown, around, n_lugs })
+        });
+        // The finest that is close enough, or else the closest.
+        let missed = |n: f64| (n / self.n_elements as f64).ln().abs();
+        let closest = || divided.iter().min_by(|a, b| missed(a.0).total_cmp(&missed(b.0)));
+        let &(n, cells) =
+            divided.iter().find(|(n, _)| missed(*n) < 0.1).or_else(closest).expect("there are divisions");
+        // Fewer than half of the coarsest.
+        if 2.0 * (self.n_elements as f64) < n {
+            return Err(TireError::TooFewElements { n_elements: self.n_elements, least: n as usize });
+        }
+        Ok(cells)
+    }
+
     /// Radius and y of the point at place `s` along the wall, `depth` [m] outside its inner face.
-    fn section(&self, size: TireSize, s: usize, depth: f64) -> [f64; 2] {
-        // Inner face: half of a superellipse that fills the section inside wall and lugs.
+    fn section(&self, size: TireSize, [side, crown_cells]: [usize; 2], s: usize, depth: f64) -> [f64; 2] {
+        // Inner face: inside wall and lugs.
         let half_width = size.width / 2.0 - self.wall_thickness;
-        let rim = size.rim_diameter / 2.0;
-        let height = size.aspect_ratio * size.width - self.wall_thickness - self.groove_depth;
-        let crown = 0.8 * half_width;
-        let (place, end) = (s as f64, (2 * SIDE_CELLS + CROWN_CELLS) as f64);
-        let side = SIDE_CELLS as f64;
+        let top = size.outer_radius() - self.wall_thickness - self.groove_depth;
+        let crown = CROWN_SHARE * half_width;
+        let (place, end) = (s as f64, (2 * side + crown_cells) as f64);
+        let side = side as f64;
         if place < side || place > end - side {
             let (t, sign) = if place < side { (place / side, -1.0) } else { ((end - place) / side, 1.0) };
-            // A quarter of an ellipse from the bead (t = 0) to the edge of the crown (t = 1), bulging outwards.
-            let angle = t * std::f64::consts::FRAC_PI_2;
-            let y = crown + (half_width - crown) * angle.cos();
-            let point = [rim + height * angle.sin(), sign * y];
-            let normal = [(half_width - crown) * angle.sin(), sign * height * angle.cos()];
+            // An arc of an ellipse from the bead (t = 0) over the widest place to the edge of the crown (t = 1).
+            let bulge = half_width - crown;
+            let bead = self.rim_width / 2.0 - self.wall_thickness;
+            let lowest = -((bead - crown) / bulge).min(1.0).acos();
+            let half_height = (top - size.rim_diameter / 2.0) / (1.0 - lowest.sin());
+            let angle = lowest + t * (FRAC_PI_2 - lowest);
+            let point = [top - half_height * (1.0 - angle.sin()), sign * (crown + bulge * angle.cos())];
+            let normal = [bulge * angle.sin(), sign * half_height * angle.cos()];
             let length = normal[0].hypot(normal[1]);
             [point[0] + depth * normal[0] / length, point[1] + depth * normal[1] / length]
         } else {
             let t = (place - side) / (end - 2.0 * side);
-            [rim + height + depth, crown * (2.0 * t - 1.0)]
+            [top + depth, crown * (2.0 * t - 1.0)]
         }
     }
 
@@ -223,6 +280,7 @@ mod tests {
     fn tread(pattern: LugPattern) -> TireTread {
         TireTread {
             size: "165/65R13".to_owned(),
+            rim_width: 0.127,
             wall_thickness: 0.016,
             groove_depth: 0.015,
             pattern,
@@ -268,11 +326,32 @@ mod tests {
                 .sum()
         };
         assert!(volume(true) > 0.0 && (volume(true) / volume(false) - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn walls_are_widest_between_bead_and_crown_and_stand_on_their_rim() {
+        let mesh = tread(LugPattern::Smooth).mesh().unwrap();
+        let widest = mesh.nodes.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap();
+        let height = (widest.x.hypot(widest.z) - 0.1651) / (0.272_35 - 0.1651);
+        assert!((widest.y / 0.0825 - 1.0).abs() < 0.01, "{widest:?}");
+        assert!((0.2..0.6).contains(&height), "{height}");
+        // The wall meets the rim at a slant, so its outer corner lies a little inside the flange.
+        let beads = mesh.nodes_of("rim").unwrap().into_iter().map(|n| mesh.nodes[n as usize].y.abs());
+        let (inner, outer) = beads.fold((f64::INFINITY, 0.0), |(i, o): (f64, f64), y| (i.min(y), o.max(y)));
+        assert!((inner - 0.0475).abs() < 1e-12 || (outer - 0.0475).abs() < 1e-12, "{inner} {outer}");
+        assert!(outer <= 0.0635 + 1e-12);
+    }
+
+    #[test]
+    fn what_cannot_be_a_tire_is_refused() {
         let mut too_thick = tread(LugPattern::Smooth);
         too_thick.wall_thickness = 0.06;
         assert!(matches!(too_thick.mesh(), Err(TireError::Thickness { .. })));
         let mut too_coarse = tread(LugPattern::Alternating { count: 20 });
         too_coarse.n_elements = 500;
         assert!(matches!(too_coarse.mesh(), Err(TireError::TooFewElements { .. })));
+        let mut on_inches = tread(LugPattern::Smooth);
+        on_inches.rim_width = 5.0;
+        assert!(on_inches.mesh().unwrap_err().to_string().contains("expected 0.1118 to 0.165 m"));
     }
 }

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct Tire {
     /// Size code such as `165/65R13`: width in mm, aspect ratio in %, diameter of the rim in inches.
     pub size: String,
+    /// Distance between the flanges of the rim [m]; the section of a tire is wider and bulges.
+    pub rim_width_m: f64,
     /// Thickness of the wall [m].
     pub wall_thickness_m: f64,
     /// Depth of the grooves between the lugs [m].

@@ -154,6 +154,7 @@ fn wrong_tires_are_refused_with_line_and_remedy() {
     let cases = [
         ("gap_m: 0.001", "gap_m: -0.02", "the tire starts inside the bed"),
         ("size: \"165/65R13\"", "size: \"165x65\"", "is not understood"),
+        ("rim_width_m: 0.127", "rim_width_m: 5.0", "rim width 5 m"),
         ("n_elements: 24000", "n_elements: 900", "too few"),
         ("wall_thickness_m: 0.016", "wall_thickness_m: 0.0002", "slivers"),
         ("inflation_pa: 1.4e5", "inflation_pa: -1.4e5", "is -140000"),

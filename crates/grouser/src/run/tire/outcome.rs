@@ -94,7 +94,7 @@ fn conventions() -> BTreeMap<&'static str, String> {
         ("sinkage", "height of the undisturbed surface minus height of the tire's lowest point".into()),
         (
             "deflection",
-            "outer radius of the size code minus height of the axle above the tire's lowest point".into(),
+            "radius of the inflated tire without load minus height of the axle above its lowest point".into(),
         ),
         (
             "gross_tractive_effort",

@@ -50,8 +50,9 @@ const NEAR_FLOOR: f64 = 0.2;
 #[serde(bound = "L: Law")]
 pub struct TireRun<L: Law> {
     roll: Roll,
-    /// Outer radius of the size code [m].
+    /// Outer radius of the size code, which slip is measured with, and of the inflated tire without load [m].
     radius: f64,
+    free_radius: f64,
     bed: LawBed<L>,
     body: Body<L>,
     axle: Axle,
@@ -140,6 +141,7 @@ impl<L: Law> Pass<L> for TireRun<L> {
             before: bed.energy(),
             roll: roll.clone(),
             radius,
+            free_radius: largest_radius,
             body,
             level,
             deepest_axle,
@@ -275,7 +277,7 @@ impl<L: Law> TireRun<L> {
             self.axle.time(),
             place.position.x - self.roll.start_m,
             self.level - lowest,
-            self.radius - (place.position.z - lowest),
+            self.free_radius - (place.position.z - lowest),
             mean.force.x,
             mean.force.y,
             mean.force.z,

@@ -189,6 +189,7 @@ impl<'de> Deserialize<'de> for Tread {
 pub fn shape(tire: &Tire) -> TireTread {
     TireTread {
         size: tire.size.clone(),
+        rim_width: tire.rim_width_m,
         wall_thickness: tire.wall_thickness_m,
         groove_depth: tire.groove_depth_m,
         pattern: match tire.tread {

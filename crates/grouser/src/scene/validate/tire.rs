@@ -64,6 +64,7 @@ pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, (tire, rol
 fn mesh(check: &mut Check, scenario: &Scenario, tire: &Tire) {
     let path = |error: &TireError| match error {
         TireError::SizeCode { .. } => "tool.size",
+        TireError::RimWidth { .. } => "tool.rim_width_m",
         TireError::Thickness { .. } => "tool.wall_thickness_m",
         TireError::TooFewElements { .. } => "tool.n_elements",
     };
