@@ -14,7 +14,8 @@ pub fn test() -> bool {
     parts.run("lints", || {
         succeeds(&mut cargo(&["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"]))
     });
-    parts.run("tests", || succeeds(&mut cargo(&["test", "--quiet", "--workspace"])));
+    // A crate that fails does not hide the tests of those after it.
+    parts.run("tests", || succeeds(&mut cargo(&["test", "--quiet", "--workspace", "--no-fail-fast"])));
     let mut program = None;
     parts.run("build", || {
         program = grouser::build();
