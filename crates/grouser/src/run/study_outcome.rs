@@ -11,6 +11,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// What each variant's energy ledger misses, whatever columns a study asks for.
+const ENERGY_RESIDUAL: &str = "energy residual over work or loss";
+
 /// What a variant left.
 pub struct VariantResult {
     labels: Vec<String>,
@@ -40,6 +43,11 @@ impl VariantResult {
         self.metrics().find(|(each, ..)| *each == name).map(|(_, value, _)| value)
     }
 
+    /// What its energy ledger misses [-]; `None` where nothing moves.
+    fn energy_residual(&self) -> Option<f64> {
+        self.summary["energy"]["residual_fraction"].as_f64()
+    }
+
     fn table(&self, name: &str) -> Option<Table> {
         Table::from_csv(&fs::read_to_string(self.folder.join(format!("{name}.csv"))).ok()?)
     }
@@ -63,10 +71,17 @@ pub fn outcome(study: &Study, results: &[VariantResult]) -> Outcome {
         let wanted = result.metrics().filter(|(name, ..)| is_column(study, name));
         wanted.map(move |(name, value, unit)| Metric::new(format!("{label}: {name}"), value, unit))
     });
+    let residuals = results.iter().filter_map(|result| Some((result, result.energy_residual()?)));
+    let residual_of = |(result, residual): (&VariantResult, f64)| {
+        Metric::new(format!("{}: {ENERGY_RESIDUAL}", result.labels.join(", ")), residual, "-")
+    };
+    let largest = residuals.clone().map(|(_, residual)| residual).max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let largest =
+        largest.map(|it| Metric::new(format!("largest {ENERGY_RESIDUAL} of all variants"), it, "-"));
     Outcome {
         charts: charts.collect(),
         sections: vec![table_of_variants(study, results)],
-        metrics: metrics.collect(),
+        metrics: metrics.chain(residuals.map(residual_of)).chain(largest).collect(),
         ..Outcome::default()
     }
 }
@@ -83,16 +98,20 @@ fn table_of_variants(study: &Study, results: &[VariantResult]) -> Section {
             names.push((name.to_owned(), unit.to_owned()));
         }
     }
+    let has_energy = results.iter().any(|result| result.energy_residual().is_some());
     let heads: Vec<String> = study
         .axes
         .iter()
         .map(|axis| axis.name.clone())
         .chain(names.iter().map(|(name, unit)| format!("{name} [{unit}]")))
+        .chain(has_energy.then(|| format!("{ENERGY_RESIDUAL} [-]")))
         .chain(["time [s]".to_owned()])
         .collect();
     let row = |result: &VariantResult| {
         let values = names.iter().map(|(name, _)| result.metric(name).map_or(String::new(), number));
-        result.labels.iter().cloned().chain(values).chain([number(result.time("wall_s"))]).collect()
+        let residual = has_energy.then(|| result.energy_residual().map_or(String::new(), number));
+        let took = number(result.time("wall_s"));
+        result.labels.iter().cloned().chain(values).chain(residual).chain([took]).collect()
     };
     Section { title: "All variants".into(), heads, rows: results.iter().map(row).collect() }
 }
@@ -232,6 +251,31 @@ mod tests {
                 (low - a).abs() < 1e-12 && (high - b).abs() < 1e-12 && (mean - (a + b) / 2.0).abs() < 1e-12
             );
         }
+    }
+
+    #[test]
+    fn the_energy_residual_of_every_variant_is_shown_whatever_columns_are_asked_for() {
+        let axis = r#"(axes: [(name: "seed", values: [(label: "1", set: {}), (label: "2", set: {}), (label: "3", set: {})])], columns: ["grains"])"#;
+        let study: Study = crate::scene::dialect().from_str(axis).unwrap();
+        let result = |(variant, residual): (&Variant, Option<f64>)| VariantResult {
+            labels: variant.labels.clone(),
+            folder: PathBuf::new(),
+            summary: serde_json::json!({"energy": residual.map(|r| serde_json::json!({"residual_fraction": r}))}),
+        };
+        let variants = study.variants();
+        let outcome_of = |residuals: [Option<f64>; 3]| {
+            outcome(&study, &variants.iter().zip(residuals).map(result).collect::<Vec<_>>())
+        };
+        let seen = outcome_of([Some(1e-3), Some(-2e-3), None]);
+        let metric = |name: &str| seen.metrics.iter().find(|m| m.name == name).map(|m| m.value);
+        assert_eq!(metric("1: energy residual over work or loss"), Some(1e-3));
+        assert_eq!(metric("largest energy residual over work or loss of all variants"), Some(-2e-3));
+        let Section { heads, rows, .. } = &seen.sections[0];
+        assert_eq!(heads[1..], ["energy residual over work or loss [-]", "time [s]"]);
+        assert_eq!([0, 1, 2].map(|i| rows[i][1].as_str()), ["0.001000", "-0.002000", ""]);
+        // Where nothing moves there is no such column.
+        let still = outcome_of([None; 3]);
+        assert!(still.metrics.is_empty() && still.sections[0].heads == ["seed", "time [s]"]);
     }
 
     #[test]
