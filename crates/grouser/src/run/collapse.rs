@@ -107,6 +107,8 @@ impl<L: Law> Pass<L> for Collapsing<L> {
         let tops =
             held.iter().zip(radii(&bed)).filter_map(|(held, radius)| Some(held.as_ref()?.place[2] + radius));
         let (sum, n) = tops.fold((0.0, 0.0), |(sum, n), top| (sum + top, n + 1.0));
+        // The ledger begins with what contacts store by now, which a bed without lists does not know.
+        bed.renew_lists()?;
         bed.keep_ledger(true);
         let height = bed.grains().spheres.iter().map(|s| s.position.z.to_f64()).fold(0.0, f64::max);
         let gravity = scenario.gravity();

@@ -45,7 +45,8 @@ fn a_heap_without_friction_lies_nearly_flat_and_its_angle_rises_with_friction() 
     // Rough grains that cannot turn stand as a cliff.
     assert!(gentle > flat + 6.0 && gentle < 30.0 && steep > 60.0, "{flat}°, {gentle}°, {steep}°");
     for label in ["0", "0.3", "0.9"] {
-        assert!(metric(label, "energy residual over the energy of the height").abs() < 0.02, "{summary}");
+        // What contacts store when the column is cut out is no gain: it would be 0.5 % of the height's energy without friction.
+        assert!(metric(label, "energy residual over the energy of the height").abs() < 0.002, "{summary}");
     }
 
     let bad = COLUMN.replace("column_m: 0.07", "column_m: 0.17").replace("x: Walled, ", "");
