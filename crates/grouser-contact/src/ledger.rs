@@ -35,6 +35,16 @@ impl ContactLedger {
         self.sliding += energy.sliding.to_f64() * time_step;
     }
 
+    /// Adds `weight` times what `other` holds.
+    pub fn add_weighted(&mut self, other: &Self, weight: f64) {
+        self.normal_elastic += weight * other.normal_elastic;
+        self.tangential_elastic += weight * other.tangential_elastic;
+        self.normal_damping += weight * other.normal_damping;
+        self.tangential += weight * other.tangential;
+        self.sliding += weight * other.sliding;
+        self.turning += weight * other.turning;
+    }
+
     /// Adds the spending of one pass to this running ledger; stored energies are those of the latest pass.
     pub fn record(&mut self, pass: &Self) {
         self.normal_elastic = pass.normal_elastic;
@@ -69,11 +79,6 @@ impl ContactLedger {
 
 impl AddAssign for ContactLedger {
     fn add_assign(&mut self, other: Self) {
-        self.normal_elastic += other.normal_elastic;
-        self.tangential_elastic += other.tangential_elastic;
-        self.normal_damping += other.normal_damping;
-        self.tangential += other.tangential;
-        self.sliding += other.sliding;
-        self.turning += other.turning;
+        self.add_weighted(&other, 1.0);
     }
 }

@@ -1,7 +1,7 @@
 //! One pass over the grains near a surface: touches, memories, law, equal and opposite forces.
 
 use crate::candidates::{Candidates, centre};
-use crate::neighbourhood::{Touch, touches};
+use crate::touches::{Touch, touches};
 use grouser_contact::{
     Body, Contact, ContactLaw, ContactLedger, Frame, Load, Memory, PairTable, Precision, Real, RotationLaw,
     Sphere, Vector,
@@ -39,6 +39,7 @@ struct Remembered<M> {
     id: u32,
     /// Normal in the frame of the surface.
     normal: Vec3,
+    is_minimum: bool,
     memory: M,
 }
 
@@ -60,8 +61,10 @@ pub struct Seen {
     pub grain: u32,
     /// Contact point in the world [m].
     pub point: Vec3,
-    /// Force on the surface in the world's frame [N].
+    /// Force on the surface in the world's frame [N], as often as it counts.
     pub force: Vec3,
+    /// How often it counts ([`Touch::weight`]): below zero where it takes back what others count twice.
+    pub weight: f64,
 }
 
 /// What one step needs beside the contacts.
@@ -93,9 +96,9 @@ impl<M> Default for Contacts<M> {
 }
 
 impl<M> Contacts<M> {
-    /// Number of contacts of the last step.
+    /// Number of contacts of the last step: places where the surface is nearest to a grain.
     pub fn n_contacts(&self) -> usize {
-        self.remembered.len()
+        self.remembered.iter().filter(|contact| contact.is_minimum).count()
     }
 
     /// Steps 2 to 6 of `docs/theory/surfaces.md` for the grains of `candidates`: adds to their `loads`, gives the opposite to
@@ -125,13 +128,12 @@ impl<M> Contacts<M> {
             let sphere = &spheres[near.index as usize];
             let (radius, position) = (sphere.radius.to_f64(), centre(sphere));
             let in_frame = carrier.place_in_frame(&position);
-            // 2. One contact for each smooth neighbourhood.
+            // 2. Where the distance from the centre is critical.
             let touches = touches(surface, triangles, &in_frame, radius);
             let normals: Vec<Vec3> = touches.iter().map(|t| normal_of(t, &in_frame, surface)).collect();
-            for (k, touch) in touches.iter().enumerate() {
-                // 3. What it remembers: the contact of this grain whose normal was nearest.
-                let normal_in_frame = normals[k];
-                let memory = recall(&self.remembered, near.id, &normals, k).unwrap_or_default();
+            // 3. What each remembers.
+            let memories = recall(&self.remembered, near.id, &touches, &normals);
+            for ((touch, &normal_in_frame), memory) in touches.iter().zip(&normals).zip(memories) {
                 // 4. The law.
                 let (point, normal) = (carrier.point(&touch.point), carrier.direction(&normal_in_frame));
                 let overlap = radius - touch.distance;
@@ -148,23 +150,27 @@ impl<M> Contacts<M> {
                         P::Real::from_f64(1.0 / (1.0 / sphere.mass.to_f64() + inverse_mass));
                 }
                 let pair = step.table.pair(sphere.material, material);
+                let mut energy = ContactLedger::default();
                 let (response, mut memory) = step.law.respond(&contact, pair, memory);
                 let arm = P::Real::from_f64(-touch.distance);
                 let mut torque = contact.normal.cross(response.tangential_force) * arm;
                 if !<L::Rotation as RotationLaw<P::Real>>::IS_SPHERE {
                     let (couples, remembered) = step.law.couples(&contact, pair, &response, &bodies, memory);
                     (torque, memory) = (couples.torques[0], remembered);
-                    pass.turning += couples.spent.to_f64() * step.time_step;
+                    energy.turning += couples.spent.to_f64() * step.time_step;
                 }
-                now.push(Remembered { id: near.id, normal: normal_in_frame, memory });
-                // 5. Equal and opposite forces at one point.
-                let force = contact.normal * response.normal_force + response.tangential_force;
-                loads[near.index as usize].add(force, torque);
+                let is_minimum = touch.is_minimum;
+                now.push(Remembered { id: near.id, normal: normal_in_frame, is_minimum, memory });
+                // 5. Equal and opposite forces at one point, as often as they count.
+                let weight = P::Real::from_f64(touch.weight);
+                let force = (contact.normal * response.normal_force + response.tangential_force) * weight;
+                loads[near.index as usize].add(force, torque * weight);
                 let force = force.cast::<f64>();
                 let on_surface = -Vec3::new(force.x, force.y, force.z);
                 carrier.receive(touch, &point, on_surface);
-                observe(Seen { grain: near.id, point, force: on_surface });
-                pass.add(&response.energy, step.time_step);
+                observe(Seen { grain: near.id, point, force: on_surface, weight: touch.weight });
+                energy.add(&response.energy, step.time_step);
+                pass.add_weighted(&energy, touch.weight);
                 let separated = contact.velocity.dot(contact.normal).to_f64() * step.time_step;
                 // 6. A centre that was on the other side before this step has passed through the surface.
                 let has_passed = separated > touch.distance;
@@ -184,22 +190,43 @@ fn normal_of(touch: &Touch, centre: &Vec3, surface: &TriangleSurface) -> Vec3 {
     (centre - touch.point).try_normalize(0.0).unwrap_or_else(|| surface.normal(touch.triangle as usize))
 }
 
-/// Memory of the contact of grain `id` whose normal was nearest to `normals[k]`, among those that no other of the grain's
-/// present contacts is nearer to: one memory has one heir.
-fn recall<M: Copy>(remembered: &[Remembered<M>], id: u32, normals: &[Vec3], k: usize) -> Option<M> {
-    let is_heir = |normal: &Vec3| {
-        let mine = normals[k].dot(normal);
-        (normals.iter().enumerate())
-            .all(|(other, n)| other == k || n.dot(normal) < mine || (n.dot(normal) == mine && k < other))
-    };
+/// Memories of the present `touches` of grain `id`.
+///
+/// Each inherits from the contact of its kind (minimum or not) whose normal was nearest, among those that no other of the present
+/// ones is nearer to: one memory has one heir. Touches that appear together with a saddle cancel each other, so all of them
+/// remember what the contact beside them does; any other new one begins without.
+fn recall<M: Copy + Default>(
+    remembered: &[Remembered<M>],
+    id: u32,
+    touches: &[Touch],
+    normals: &[Vec3],
+) -> Vec<M> {
     let first = remembered.partition_point(|contact| contact.id < id);
-    remembered[first..]
-        .iter()
-        .take_while(|contact| contact.id == id)
-        .map(|contact| (contact.normal.dot(&normals[k]), contact))
-        .filter(|(likeness, contact)| *likeness > SAME_CONTACT && is_heir(&contact.normal))
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, contact)| contact.memory)
+    let n = remembered[first..].iter().take_while(|contact| contact.id == id).count();
+    let remembered = &remembered[first..first + n];
+    let inherited = |k: usize| {
+        let is_minimum = touches[k].is_minimum;
+        let is_heir = |normal: &Vec3| {
+            let mine = normals[k].dot(normal);
+            (normals.iter().enumerate().filter(|&(other, _)| touches[other].is_minimum == is_minimum))
+                .all(|(other, n)| other == k || n.dot(normal) < mine || (n.dot(normal) == mine && k < other))
+        };
+        (remembered.iter().filter(|contact| contact.is_minimum == is_minimum))
+            .map(|contact| (contact.normal.dot(&normals[k]), contact))
+            .filter(|(likeness, contact)| *likeness > SAME_CONTACT && is_heir(&contact.normal))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, contact)| contact.memory)
+    };
+    let mut memories: Vec<Option<M>> = (0..touches.len()).map(inherited).collect();
+    let new_saddle = (0..touches.len()).find(|&k| !touches[k].is_minimum && memories[k].is_none());
+    if let Some(saddle) = new_saddle {
+        let beside = (0..touches.len())
+            .filter(|&k| touches[k].is_minimum && memories[k].is_some())
+            .max_by(|&a, &b| normals[a].dot(&normals[saddle]).total_cmp(&normals[b].dot(&normals[saddle])));
+        let shared = beside.and_then(|k| memories[k]);
+        memories.iter_mut().for_each(|memory| *memory = memory.or(shared));
+    }
+    memories.into_iter().map(Option::unwrap_or_default).collect()
 }
 
 type FrameOf<P, L> =

@@ -4,7 +4,7 @@ use crate::candidates::{Candidates, Margin};
 use crate::closest_point::natural_coordinates;
 use crate::contact_pass::{Carrier, Contacts, Deepest, Seen, Step, asks_for_orientations};
 use crate::mirror::Mirror;
-use crate::neighbourhood::Touch;
+use crate::touches::Touch;
 use grouser_contact::{ContactLaw, ContactLedger, Load, Memory, Precision, Sphere};
 use grouser_geometry::{Orientation, TriangleSurface, Vec3};
 use serde::{Deserialize, Serialize};

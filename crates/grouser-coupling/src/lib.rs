@@ -2,10 +2,10 @@
 //!
 //! ```text
 //!        .-----.
-//!       (   o   )  n     n: from the surface to the centre      one contact for each smooth neighbourhood:
-//!        '--|--'   ^     δ = r − |centre − point|               a face speaks for the edges and vertices that
-//!   --------+------|--   contact point: on the surface          lie on it, a ridge is one contact, a sharp
-//!   surface            the surface receives the opposite force  valley is two
+//!       (   o   )  n     n: from the surface to the centre      one contact for each minimum of the distance, less
+//!        '--|--'   ^     δ = r − |centre − point|               one for each saddle between them: a cut wall and a
+//!   --------+------|--   contact point: on the surface          ridge push once, a sharp valley twice, a shallow
+//!   surface            the surface receives the opposite force  one 1 + 1 − 1 times
 //! ```
 //!
 //! A bead sinks 10 µm into a table; its force is Hertz's, and the table feels it:
@@ -32,9 +32,10 @@ mod closest_point;
 mod contact_pass;
 mod coupled_step;
 mod deforming_contacts;
+mod facet;
 mod mirror;
-mod neighbourhood;
 mod surface_contacts;
+mod touches;
 
 pub use candidates::Margin;
 pub use closest_point::{Feature, closest_point, natural_coordinates};
@@ -42,5 +43,5 @@ pub use contact_pass::{Deepest, Seen, Step};
 pub use coupled_step::{MovedGrains, SteppedSolid, coupled_step};
 pub use deforming_contacts::DeformingContacts;
 pub use mirror::{Mirror, MirrorError};
-pub use neighbourhood::{SMOOTH_ANGLE, Touch, touches};
 pub use surface_contacts::SurfaceContacts;
+pub use touches::{Touch, touches};

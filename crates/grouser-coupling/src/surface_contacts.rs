@@ -2,7 +2,7 @@
 
 use crate::candidates::{Candidates, Margin};
 use crate::contact_pass::{Carrier, Contacts, Deepest, Seen, Step, asks_for_orientations};
-use crate::neighbourhood::Touch;
+use crate::touches::Touch;
 use grouser_contact::{ContactLaw, ContactLedger, Load, Memory, Precision, Sphere};
 use grouser_geometry::{Orientation, RigidMotion, TriangleSurface, Vec3, Wrench};
 use serde::{Deserialize, Serialize};

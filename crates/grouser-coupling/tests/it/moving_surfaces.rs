@@ -58,7 +58,9 @@ fn listed_triangles_give_the_contacts_of_brute_force_while_wheel_and_grains_move
         let expected: usize = (spheres.iter())
             .map(|s| {
                 touches(&surface, &every_triangle, &body.motion().point_in_body(&of(s.position)), RADIUS)
-                    .len()
+                    .iter()
+                    .filter(|touch| touch.is_minimum)
+                    .count()
             })
             .sum();
         assert_eq!(contacts.n_contacts(), expected);
@@ -235,7 +237,7 @@ fn convex_bodies_are_touched_once_at_their_closest_point_from_every_side() {
             }
             let found = touches(surface, &every_triangle, &place, RADIUS);
             assert_eq!(found.len(), 1, "shape {shape} at {place}: {found:?}");
-            assert_eq!(found[0].distance, distance);
+            assert!((found[0].distance - distance).abs() < 1e-12 * RADIUS);
             n_touches += 1;
         }
         assert!(n_touches > 100, "shape {shape}: {n_touches}");

@@ -42,8 +42,9 @@ impl Traction {
 
     /// Adds a contact; moments are about the axle at `axle` [m].
     pub fn add(&mut self, seen: &Seen, axle: &Vec3) {
+        // What takes back a part of forward forces belongs to them.
         let along = seen.force.x;
-        *(if along > 0.0 { &mut self.forward } else { &mut self.backward }) += along;
+        *(if along * seen.weight > 0.0 { &mut self.forward } else { &mut self.backward }) += along;
         self.force += seen.force;
         self.moment += (seen.point - axle).cross(&seen.force);
         self.now += seen.force;
@@ -115,7 +116,7 @@ mod tests {
         traction.begin_step();
         let axle = Vec3::new(1.0, 0.0, 0.3);
         let mut push = |x: f64, force: Vec3| {
-            traction.add(&Seen { grain: 0, point: Vec3::new(x, 0.0, 0.0), force }, &axle);
+            traction.add(&Seen { grain: 0, point: Vec3::new(x, 0.0, 0.0), force, weight: 1.0 }, &axle);
         };
         push(1.0, Vec3::new(100.0, 0.0, 500.0));
         push(1.0, Vec3::new(-40.0, 0.0, 0.0));
