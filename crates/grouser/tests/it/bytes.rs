@@ -1,6 +1,6 @@
 //! The same scenario gives the same bytes: twice, on any number of threads, from the cache, after interruptions.
 
-use crate::{CUP, errors, grouser};
+use crate::{CUP, errors, grouser, interrupted};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -50,21 +50,17 @@ fn interrupted_again_and_again(scene: &str, out: &str, cache: &str, most: u64) -
     for attempt in 0..200 {
         let mut command = Command::new(env!("CARGO_BIN_EXE_grouser"));
         command.args(["run", scene, "--out", out, "--threads", if attempt % 2 == 0 { "1" } else { "2" }]);
-        // A signal that comes before the program listens leaves nothing to go on from.
         if Path::new(out).join("checkpoint.bin").exists() {
             command.arg("--resume");
         }
-        command.env("GROUSER_CACHE", cache).stderr(Stdio::null());
-        let mut child = command.spawn().unwrap();
-        if attempt < most {
-            std::thread::sleep(Duration::from_millis(450 + 37 * attempt));
-            let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-        }
-        match child.wait().unwrap().code() {
+        command.env("GROUSER_CACHE", cache);
+        let ended = match attempt < most {
+            true => interrupted(&mut command, Duration::from_millis(37 * attempt)),
+            false => command.stderr(Stdio::null()).status().unwrap().code(),
+        };
+        match ended {
             Some(0) => break,
             Some(130) => n_interruptions += 1,
-            // The signal came before the program listened to it, or after its end.
-            None => {}
             other => panic!("exit status {other:?}"),
         }
     }

@@ -10,8 +10,10 @@ mod study;
 mod vehicle;
 mod vehicle_files;
 
+use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
 
 /// A scene of a few hundred grains: two small plates pressed into a walled cup.
 const CUP: &str = r#"(
@@ -36,6 +38,19 @@ fn grouser(cache: &Path, arguments: &[&str]) -> Output {
         .env("GROUSER_CACHE", cache)
         .output()
         .expect("the program starts")
+}
+
+/// Starts the program and interrupts it `after` it has shown how far it is: by then it listens. Gives its exit status.
+fn interrupted(command: &mut Command, after: Duration) -> Option<i32> {
+    let mut child = command.stderr(Stdio::piped()).spawn().expect("the program starts");
+    let mut lines = BufReader::new(child.stderr.take().expect("is piped")).lines().map_while(Result::ok);
+    if lines.any(|line| line.starts_with("settling") || line.contains("% ")) {
+        std::thread::sleep(after);
+        Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    }
+    // A program whose lines nobody takes would wait for ever.
+    lines.for_each(drop);
+    child.wait().expect("it ends").code()
 }
 
 /// What the program wrote to its standard error.

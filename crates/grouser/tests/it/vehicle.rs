@@ -1,6 +1,6 @@
 //! A vehicle over soft ground: the same bytes on any number of threads and after interruptions.
 
-use crate::{errors, grouser};
+use crate::{errors, grouser, interrupted};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -39,18 +39,16 @@ fn a_drive_split_by_interruptions_ends_with_the_bytes_of_the_straight_one_on_any
     for attempt in 0..200 {
         let mut command = Command::new(env!("CARGO_BIN_EXE_grouser"));
         command.args(arguments(&scene, &split)).args(["--threads", "1"]);
-        // A signal that comes before the program listens leaves nothing to go on from.
         if Path::new(&split).join("checkpoint.bin").exists() {
             command.arg("--resume");
         }
-        let mut child = command.stderr(Stdio::null()).spawn().unwrap();
-        if attempt < 6 {
-            std::thread::sleep(Duration::from_millis(300 + 90 * attempt));
-            Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-        }
-        match child.wait().unwrap().code() {
+        let ended = match attempt < 6 {
+            true => interrupted(&mut command, Duration::from_millis(90 * attempt)),
+            false => command.stderr(Stdio::null()).status().unwrap().code(),
+        };
+        match ended {
             Some(0) => break,
-            Some(130) | None => n_interruptions += 1,
+            Some(130) => n_interruptions += 1,
             other => panic!("exit status {other:?}"),
         }
     }
