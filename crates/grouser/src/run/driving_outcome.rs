@@ -1,6 +1,7 @@
 //! What has come of driving: ruts, rolling resistance, maps, and how both depend on the numerical settings.
 
-use super::driving::{Drive, Driven, parts};
+use super::drive::{Drive, parts};
+use super::driving::Driven;
 use super::experiment::{Outcome, Picture, Section, Verdict};
 use super::report::number;
 use crate::output::chart::{Chart, Mark, Series};

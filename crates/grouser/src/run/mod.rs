@@ -6,6 +6,7 @@ mod clock;
 mod collapse;
 mod collapse_outcome;
 mod compose;
+mod drive;
 mod driver;
 mod driving;
 mod driving_outcome;

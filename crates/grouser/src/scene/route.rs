@@ -11,6 +11,9 @@ use serde::{Deserialize, Serialize};
 pub struct Route {
     /// Corners of the way of the first frame's origin [m].
     pub points_m: Vec<[f64; 2]>,
+    /// Sets of the vehicle's equipment to drive with; without it all of them.
+    #[serde(default)]
+    pub with_equipment: Vec<String>,
     /// Distance between equilibria [m], at least √2 times the distance of the ground's points.
     pub run_step_m: f64,
     /// Simplified equilibria in between.
@@ -83,6 +86,11 @@ impl Route {
     /// Length of the way [m].
     pub fn length(&self) -> f64 {
         self.way().length()
+    }
+
+    /// Those of `all` sets of equipment that are driven.
+    pub fn driven<'a>(&self, all: &'a [String]) -> impl Iterator<Item = &'a String> {
+        all.iter().filter(|set| self.with_equipment.is_empty() || self.with_equipment.contains(set))
     }
 
     /// The way.

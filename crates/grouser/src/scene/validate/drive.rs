@@ -20,6 +20,17 @@ pub fn validate(check: &mut Check, ground: &SoftGround, vehicle: &Vehicle, route
             break;
         }
     }
+    for (n, set) in route.with_equipment.iter().enumerate() {
+        if !vehicle.equipment.contains(set) {
+            check.push(
+                &format!("motion.with_equipment[{n}]"),
+                format!("the vehicle has no equipment \"{set}\""),
+                &format!("one of {:?}", vehicle.equipment),
+                "a misspelt name",
+                String::new(),
+            );
+        }
+    }
     for (f, frame) in vehicle.frames.iter().enumerate() {
         for (a, axle) in frame.axles.iter().enumerate() {
             for (b, belt) in axle.belts.iter().enumerate() {
