@@ -18,6 +18,9 @@ pub struct Criterion {
 }
 
 impl Criterion {
+    /// Name of [`Criterion::rayleigh`].
+    pub const RAYLEIGH: &'static str = "Rayleigh wave";
+
     /// Largest step that this criterion allows [s].
     pub fn step_s(&self) -> f64 {
         self.time_s * self.fraction
@@ -26,7 +29,7 @@ impl Criterion {
     /// Rayleigh wave over the smallest grain of a material.
     pub fn rayleigh(material: &Material, radius: f64, fraction: f64, place: impl Into<String>) -> Self {
         Self {
-            name: "Rayleigh wave".into(),
+            name: Self::RAYLEIGH.into(),
             time_s: rayleigh_time(material, radius),
             fraction,
             place: place.into(),

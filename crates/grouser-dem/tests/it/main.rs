@@ -9,6 +9,7 @@ mod integrators;
 mod reference_kernel;
 mod rotation;
 mod size_ratio;
+mod stability;
 
 use grouser_contact::*;
 use grouser_dem::*;

@@ -159,6 +159,14 @@ impl<L: Law> Pass<L> for Collapsing<L> {
         vec![("grains", grains_frame(&self.bed))]
     }
 
+    fn bed(&self) -> &LawBed<L> {
+        &self.bed
+    }
+
+    fn rows(&self) -> (&str, &Table) {
+        ("collapse", &self.table)
+    }
+
     fn finish(self, _: &Scenario) -> Collapsed {
         let (ledger, tool) = (self.bed.energy(), ContactLedger::default());
         Collapsed {

@@ -3,13 +3,16 @@
 
 use super::experiment::{Advanced, Outcome, Status};
 use super::{Experiment, Law, LawBed, Progress, RunError, SetupError, bed, cache, level, time_step};
-use crate::output::PolyData;
 use crate::output::summary::{self, Metric};
+use crate::output::{PolyData, Table};
 use crate::scene::{Grains, Scenario};
 use grouser_contact::Real;
-use grouser_dem::{Failure, SettleCriterion, Settled, Settling};
+use grouser_dem::{Criterion, Failure, SettleCriterion, Settled, Settling, Stability};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+
+/// Samples between two looks at how much of the stable step the contacts leave.
+const SAMPLES_PER_LOOK: u64 = 10;
 
 /// Something that is done to a copy of the settled bed: a plate pressed into it, a wheel rolled over it.
 pub trait Pass<L: Law>: Serialize + DeserializeOwned + Sized {
@@ -49,6 +52,12 @@ pub trait Pass<L: Law>: Serialize + DeserializeOwned + Sized {
     /// Everything as ParaView sees it.
     fn frames(&self) -> Vec<(&'static str, PolyData<'static>)>;
 
+    /// Its bed.
+    fn bed(&self) -> &LawBed<L>;
+
+    /// Name and rows of the time series so far, for runs that are interrupted or fail.
+    fn rows(&self) -> (&str, &Table);
+
     /// What stays.
     fn finish(self, scenario: &Scenario) -> Self::Finished;
 
@@ -78,6 +87,8 @@ pub struct OnBed<L: Law, P: Pass<L>> {
     time_step: f64,
     stage: Stage<L, P>,
     done: Vec<P::Finished>,
+    /// Largest share of the stable step that was seen.
+    stability: Stability,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -117,6 +128,7 @@ impl<L: Law, P: Pass<L>> OnBed<L, P> {
                 }
             },
             done: Vec::new(),
+            stability: Stability::default(),
         };
         begun.begin_pass(scenario)?;
         Ok(begun)
@@ -197,6 +209,15 @@ impl<L: Law, P: Pass<L>> Experiment for OnBed<L, P> {
         })?;
         let (now, all) = pass.steps();
         let n_steps = now - before;
+        if now.is_multiple_of(SAMPLES_PER_LOOK * pass.steps_per_sample()) {
+            let seen = pass.bed().stability(time_step);
+            if seen.share > Stability::LIMIT && self.stability.share <= Stability::LIMIT {
+                progress.note(&trembling(&seen, scenario, time_step, now as f64 * time_step));
+            }
+            if seen.share > self.stability.share {
+                self.stability = seen;
+            }
+        }
         // Due at the first sample at or after every multiple of the interval.
         let is_due = |interval_s: f64| {
             let samples = (interval_s / scenario.outputs.sample_every_s).round().max(1.0) as u64;
@@ -251,13 +272,40 @@ impl<L: Law, P: Pass<L>> Experiment for OnBed<L, P> {
             Stage::Passing { bed, settled, .. } => (bed, Some(settled)),
         };
         let mut outcome = P::outcome(scenario, bed, &self.done);
+        if let Stage::Passing { pass: Some(pass), .. } = &self.stage {
+            let (name, rows) = pass.rows();
+            outcome.tables.push((name.into(), rows.clone()));
+        }
         if let Some(settled) = settled {
             outcome.metrics.splice(0..0, bed_metrics(bed, settled));
+        }
+        if self.stability.share > 0.0 {
+            outcome.metrics.push(Metric::new(
+                "bound of the stable step, largest share",
+                self.stability.share,
+                "-",
+            ));
         }
         let step = scenario.soil.grains().and_then(|soil| time_step(scenario, soil).ok());
         outcome.time_step = step.as_ref().map(summary::TimeStep::from);
         outcome
     }
+}
+
+/// What to say of a bed whose contacts vibrate faster than steps of `step_s` can follow.
+fn trembling(seen: &Stability, scenario: &Scenario, step_s: f64, time_s: f64) -> String {
+    let criteria = scenario.soil.grains().and_then(|soil| time_step(scenario, soil).ok());
+    let rayleigh = criteria.iter().flat_map(|step| &step.criteria).filter(|c| c.name == Criterion::RAYLEIGH);
+    let shortest = rayleigh.map(Criterion::step_s).fold(f64::INFINITY, f64::min);
+    let enough = scenario.dials.time_step_fraction * step_s / shortest * Stability::LIMIT / seen.share;
+    format!(
+        "at {time_s:.3} s the load on grain {} takes {:.1} of the bound of the stable step; beyond {} beds may shake and gain \
+         energy. Look at the energy residual; try --set dials.time_step_fraction={:.2}",
+        seen.grain,
+        seen.share,
+        Stability::LIMIT,
+        (80.0 * enough).floor() / 100.0,
+    )
 }
 
 /// What the settled bed is like.

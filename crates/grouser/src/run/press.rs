@@ -154,6 +154,14 @@ impl<L: Law> Pass<L> for Pressing<L> {
         vec![("grains", grains_frame(&self.bed)), ("tool", surface_frame(self.tool.surface_in_place()))]
     }
 
+    fn bed(&self) -> &LawBed<L> {
+        &self.bed
+    }
+
+    fn rows(&self) -> (&str, &Table) {
+        (&self.name, &self.table)
+    }
+
     fn finish(self, _: &Scenario) -> Pressed {
         let ledger = ToolLedger::between(
             &self.before,

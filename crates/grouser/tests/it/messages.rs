@@ -162,7 +162,7 @@ fn wrong_tires_are_refused_with_line_and_remedy() {
         ("slip: 0.05", "slip: 5.0", "is 5"),
         ("travel_m: 0.45", "travel_m: 4.5", "is 4.5"),
         ("y: Walled", "y: Periodic", "a tire meets no images"),
-        ("largest_overlap: 0.5", "largest_overlap: 50", "is 50"),
+        ("largest_overlap: 0.8", "largest_overlap: 80", "is 80"),
         ("friction: 0.02", "friction: -0.02", "is -0.02"),
     ];
     let home = tempfile::tempdir().unwrap();
@@ -204,5 +204,8 @@ fn a_tread_that_turns_inside_out_fails_with_element_step_time_and_remedy_and_kee
             assert!(message.contains(part), "{part} is not in: {message}");
         }
         assert!(out.join("checkpoint.bin").is_file());
+        // What was measured until then is not lost.
+        let rows = fs::read_to_string(out.join("tire.csv")).unwrap();
+        assert!(rows.lines().count() > 2, "{rows}");
     }
 }

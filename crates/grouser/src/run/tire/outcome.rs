@@ -148,6 +148,8 @@ fn metrics(scenario: &Scenario, tire: &Rolled) -> Vec<Metric> {
         }
         _ => Metric::new("contact patch at full load", patch, "m²"),
     });
+    let deepest = tire.table.column("deepest_overlap").into_iter().fold(0.0, f64::max);
+    metrics.push(Metric::new("largest overlap over a grain's radius", deepest, "-"));
     let energy = tire.ledger.energy();
     metrics.push(Metric::new("energy residual", energy.residual_fraction, "-"));
     let [all, solid, contacts] = tire.spent;

@@ -67,6 +67,8 @@ pub struct TireRun<L: Law> {
     /// Steps until the travel began.
     steps_sinking: Option<u64>,
     traction: Traction,
+    /// Largest overlap over a grain's radius at the tire since the last sample [-].
+    deepest: f64,
     table: Table,
     before: BedEnergy,
     pictures: Vec<Kept>,
@@ -152,6 +154,7 @@ impl<L: Law> Pass<L> for TireRun<L> {
             steps_per_sample: (scenario.outputs.sample_every_s / time_step).round().max(1.0) as u64,
             steps_sinking: None,
             traction: Traction::default(),
+            deepest: 0.0,
             table: Table::new(&COLUMNS),
             bed,
             axle,
@@ -166,7 +169,7 @@ impl<L: Law> Pass<L> for TireRun<L> {
         let n_steps = (self.n_steps - self.steps_done)
             .min(self.steps_per_sample - self.steps_done % self.steps_per_sample);
         let (dt, gravity) = (self.time_step, self.gravity);
-        let Self { bed, body, axle, traction, steps_done, .. } = self;
+        let Self { bed, body, axle, traction, deepest, steps_done, .. } = self;
         let (law, table) = (*bed.law(), bed.pair_table().clone());
         let input = StepInput {
             law: &law,
@@ -177,7 +180,7 @@ impl<L: Law> Pass<L> for TireRun<L> {
         };
         bed.run(n_steps, dt, |grains| {
             traction.begin_step();
-            body.step(axle, grains, input, traction)?;
+            *deepest = deepest.max(body.step(axle, grains, input, traction)?);
             *steps_done += 1;
             Ok::<(), Broken>(())
         })?;
@@ -215,6 +218,14 @@ impl<L: Law> Pass<L> for TireRun<L> {
             tire.fields.push(("force", PointField::Vector(force)));
         }
         vec![("grains", grains_frame(&self.bed)), ("tire", tire)]
+    }
+
+    fn bed(&self) -> &LawBed<L> {
+        &self.bed
+    }
+
+    fn rows(&self) -> (&str, &Table) {
+        ("tire", &self.table)
     }
 
     fn finish(mut self, _: &Scenario) -> Rolled {
@@ -295,7 +306,7 @@ impl<L: Law> TireRun<L> {
             self.body.elastic().map_or(0.0, |tire| tire.tread().solid.strain_energy()),
             place.spin,
             ledger.residual(),
-            self.bed.deepest_overlap().2,
+            self.bed.deepest_overlap().2.max(std::mem::take(&mut self.deepest)),
         ]);
     }
 
