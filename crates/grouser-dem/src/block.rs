@@ -172,11 +172,12 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         input: &PassInput<P, L>,
     ) {
         self.gather::<P, HAS_QUADS>(places, slab, input);
-        // Groups of 16 lanes: a constant trip count that every vector width divides.
-        for group in 0..places.len().div_ceil(16) {
+        // Groups of 16 lanes: a constant trip count that every vector width divides; constant bounds of their number, without which
+        // the compiler looks for lanes behind the last one and works on some of them one at a time.
+        for group in (0..BLOCK / 16).take_while(|group| group * 16 < places.len()) {
             self.touch(group * 16, places.len());
         }
-        for group in 0..places.len().div_ceil(16) {
+        for group in (0..BLOCK / 16).take_while(|group| group * 16 < places.len()) {
             self.respond::<LEDGER>(group * 16, places.len(), &input.law, input.time_step);
         }
         self.scatter::<P, HAS_QUADS>(places, slab, input.grains);
