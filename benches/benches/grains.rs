@@ -24,10 +24,12 @@ fn law(criterion: &mut Criterion) {
     let contacts: Vec<Contact<f64>> = (0..N_CONTACTS)
         .map(|k| {
             let phase = k as f64;
+            let normal = Vector::new(phase.cos(), phase.sin(), 0.0);
+            let velocity = Vector::new(0.01 * phase.sin(), 0.01, -0.01 * phase.cos());
             Contact {
                 overlap: 2e-5 * (1.5 + phase.sin()),
-                normal: Vector::new(phase.cos(), phase.sin(), 0.0),
-                velocity: Vector::new(0.01 * phase.sin(), 0.01, -0.01 * phase.cos()),
+                normal,
+                velocity: ContactVelocity::of(velocity, normal),
                 normal_spin: 0.1,
                 effective_radius: 0.002,
                 effective_mass: 3.5e-4,

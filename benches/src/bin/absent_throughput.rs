@@ -99,7 +99,10 @@ impl ByHand {
             let contact = Contact {
                 overlap,
                 normal,
-                velocity: a.velocity - b.velocity - (a.spin * arms[0] + b.spin * arms[1]).cross(normal),
+                velocity: ContactVelocity::of(
+                    a.velocity - b.velocity - (a.spin * arms[0] + b.spin * arms[1]).cross(normal),
+                    normal,
+                ),
                 normal_spin: 0.5 * (a.spin + b.spin).dot(normal),
                 effective_radius: a.radius * b.radius / reach,
                 effective_mass: a.mass * b.mass / (a.mass + b.mass),
@@ -120,7 +123,7 @@ impl ByHand {
             let contact = Contact {
                 overlap,
                 normal,
-                velocity: grain.velocity - (grain.spin * arm).cross(normal),
+                velocity: ContactVelocity::of(grain.velocity - (grain.spin * arm).cross(normal), normal),
                 normal_spin: 0.5 * grain.spin.dot(normal),
                 effective_radius: grain.radius,
                 effective_mass: grain.mass,

@@ -1,8 +1,8 @@
 //! The translational law of P1: Hertz with a constant normal dashpot, a linear tangential spring, stick and slip angles.
 
 use crate::{
-    Contact, ContactEnergy, ContactLaw, Free, PairProperties, ParameterError, Real, Response, Vector,
-    hertz_energy, hertz_stiffness,
+    Contact, ContactEnergy, ContactLaw, ContactVelocity, Free, PairProperties, ParameterError, Real,
+    Response, Vector, hertz_energy, hertz_stiffness,
 };
 use serde::{Deserialize, Serialize};
 
@@ -92,15 +92,14 @@ impl<T: Real> ContactLaw<T> for Dlr {
         pair: &PairProperties<T>,
         spring: Vector<T>,
     ) -> (Response<T>, Vector<T>) {
-        let &Contact { overlap, normal, velocity, effective_radius, time_step, .. } = contact;
+        let &Contact { overlap, normal, effective_radius, time_step, .. } = contact;
+        let ContactVelocity { normal: normal_velocity, tangential: tangential_velocity } = contact.velocity;
         // Eqs. (3)–(5)
         let stiffness = hertz_stiffness(pair.normal_modulus, (effective_radius * overlap).sqrt());
-        let normal_velocity = velocity.dot(normal);
         let pushed = stiffness * overlap - T::from_f64(self.normal_damping) * normal_velocity;
         let normal_force = pushed.max(T::ZERO);
 
         // Eq. (6): the spring keeps the length of the stick limit while the contact slides at the slip limit.
-        let tangential_velocity = velocity - normal * normal_velocity;
         let turned = spring - normal * normal.dot(spring);
         let turned = turned + normal.cross(turned) * (contact.normal_spin * time_step);
         let stretched = turned + tangential_velocity * time_step;

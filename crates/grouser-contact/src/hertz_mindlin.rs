@@ -1,8 +1,8 @@
 //! Hertz–Mindlin with Tsuji damping and Coulomb friction: P0 Eqs. (16)–(27).
 
 use crate::{
-    Contact, ContactEnergy, ContactLaw, Free, Loading, PairProperties, Real, Response, Tail, Vector,
-    hertz_energy, hertz_stiffness, mindlin,
+    Contact, ContactEnergy, ContactLaw, ContactVelocity, Free, Loading, PairProperties, Real, Response, Tail,
+    Vector, hertz_energy, hertz_stiffness, mindlin,
 };
 use serde::{Deserialize, Serialize};
 
@@ -37,18 +37,17 @@ impl<T: Real, const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> ContactLaw<
         pair: &PairProperties<T>,
         spring: Vector<T>,
     ) -> (Response<T>, Vector<T>) {
-        let &Contact { overlap, normal, velocity, effective_radius, effective_mass, time_step, .. } = contact;
+        let &Contact { overlap, normal, effective_radius, effective_mass, time_step, .. } = contact;
+        let ContactVelocity { normal: normal_velocity, tangential: tangential_velocity } = contact.velocity;
         // Normal: F_n = k δ − c v_n, the rate being the signed v·n (negative on approach).
         let contact_radius = (effective_radius * overlap).sqrt();
         let stiffness = hertz_stiffness(pair.normal_modulus, contact_radius);
         let dashpot = pair.damping * (effective_mass * stiffness).sqrt();
-        let normal_velocity = velocity.dot(normal);
         let pushed = stiffness * overlap - dashpot * normal_velocity;
         let normal_force = if KEEP_TAIL { pushed } else { pushed.max(T::ZERO) };
         let limit = pair.friction * normal_force.max(T::ZERO);
 
         // Tangential: the spring is turned with the pair, stretched by the sliding, cut at Coulomb's limit.
-        let tangential_velocity = velocity - normal * normal_velocity;
         let turned = spring - normal * normal.dot(spring);
         let turned = turned + normal.cross(turned) * (contact.normal_spin * time_step);
         let tangential_stiffness = pair.tangential_modulus * contact_radius;

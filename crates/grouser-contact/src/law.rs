@@ -11,8 +11,8 @@ pub struct Contact<T> {
     pub overlap: T,
     /// Unit normal n from the second body to the first [-].
     pub normal: Vector<T>,
-    /// Velocity of the first body against the second at the contact point [m/s].
-    pub velocity: Vector<T>,
+    /// Velocity of the first body against the second at the contact point.
+    pub velocity: ContactVelocity<T>,
     /// Mean spin of the two bodies about the normal [rad/s]: turns the tangential memory with the pair.
     pub normal_spin: T,
     /// Effective radius R* = r₁ r₂ / (r₁ + r₂) [m]; r₁ against a plane.
@@ -21,6 +21,24 @@ pub struct Contact<T> {
     pub effective_mass: T,
     /// Time step [s].
     pub time_step: T,
+}
+
+/// A velocity where two bodies touch, in two parts.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactVelocity<T> {
+    /// Along the normal [m/s], negative on approach.
+    pub normal: T,
+    /// In the tangent plane [m/s].
+    pub tangential: Vector<T>,
+}
+
+impl<T: Real> ContactVelocity<T> {
+    /// The parts of `velocity` [m/s].
+    #[inline(always)]
+    pub fn of(velocity: Vector<T>, normal: Vector<T>) -> Self {
+        let along = velocity.dot(normal);
+        Self { normal: along, tangential: velocity - normal * along }
+    }
 }
 
 /// Force on the first body (the second receives the opposite), and where the power goes.

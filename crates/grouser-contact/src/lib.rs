@@ -24,7 +24,7 @@
 //! let contact = Contact {
 //!     overlap: 1e-6,
 //!     normal: Vector::new(0.0, 0.0, 1.0),
-//!     velocity: Vector::new(0.01, 0.0, 0.0),
+//!     velocity: ContactVelocity { normal: 0.0, tangential: Vector::new(0.01, 0.0, 0.0) },
 //!     normal_spin: 0.0,
 //!     effective_radius: 5e-3,
 //!     effective_mass: 5.86e-3,
@@ -53,7 +53,7 @@ mod vector;
 pub use dlr::{Dlr, SlipAngles};
 pub use error::ParameterError;
 pub use hertz_mindlin::HertzMindlin;
-pub use law::{BLOCK, Blocked, Contact, ContactEnergy, ContactLaw, Lanes, Memory, Response};
+pub use law::{BLOCK, Blocked, Contact, ContactEnergy, ContactLaw, ContactVelocity, Lanes, Memory, Response};
 pub use ledger::ContactLedger;
 pub use material::{Interaction, Material, PairProperties, PairTable};
 pub use normal::{Tail, damping_coefficient, hertz_energy, hertz_stiffness, restitution_with_cut_tail};

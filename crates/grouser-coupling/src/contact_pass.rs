@@ -3,8 +3,8 @@
 use crate::candidates::{Candidates, centre};
 use crate::touches::{Touch, touches};
 use grouser_contact::{
-    Body, Contact, ContactLaw, ContactLedger, Frame, Load, Memory, PairTable, Precision, Real, RotationLaw,
-    Sphere, Vector,
+    Body, Contact, ContactLaw, ContactLedger, ContactVelocity, Frame, Load, Memory, PairTable, Precision,
+    Real, RotationLaw, Sphere, Vector,
 };
 use grouser_geometry::{Orientation, TriangleSurface, Vec3};
 use serde::{Deserialize, Serialize};
@@ -171,7 +171,7 @@ impl<M> Contacts<M> {
                 observe(Seen { grain: near.id, point, force: on_surface, weight: touch.weight });
                 energy.add(&response.energy, step.time_step);
                 pass.add_weighted(&energy, touch.weight);
-                let separated = contact.velocity.dot(contact.normal).to_f64() * step.time_step;
+                let separated = contact.velocity.normal.to_f64() * step.time_step;
                 // 6. A centre that was on the other side before this step has passed through the surface.
                 let has_passed = separated > touch.distance;
                 let depth = if has_passed { 1.0 + touch.distance / radius } else { overlap / radius };
@@ -272,7 +272,7 @@ fn contact<P: Precision, L: ContactLaw<P::Real>>(
     Contact {
         overlap: real(overlap),
         normal,
-        velocity,
+        velocity: ContactVelocity::of(velocity, normal),
         normal_spin: real(0.5) * (sphere.spin + narrow(spin)).dot(normal),
         effective_radius: real(sphere.radius.to_f64()),
         effective_mass: sphere.mass,

@@ -470,7 +470,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             let contact = Contact {
                 overlap: self.excess.0[k],
                 normal,
-                velocity: law.rotation().velocity_at_contact(normal, centres, &bodies),
+                velocity: law.rotation().velocity_in_parts(normal, centres, &bodies),
                 normal_spin: half * (spin_first + spin_second).dot(normal),
                 effective_radius: self.effective_radius.0[k],
                 effective_mass: self.effective_mass.0[k],

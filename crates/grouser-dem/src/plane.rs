@@ -100,7 +100,7 @@ impl<T: Real, M: Memory<T>> PlaneList<T, M> {
             let inverse_moment = T::ONE / (sphere.mass * effective_radius * effective_radius);
             let of_grain = Body { arm, spin: sphere.spin, inverse_moment, frame };
             let bodies = [of_grain, Body::at_rest(<FrameOf<T, L>>::default())];
-            let velocity = input.law.rotation().velocity_at_contact(normal, sphere.velocity, &bodies);
+            let velocity = input.law.rotation().velocity_in_parts(normal, sphere.velocity, &bodies);
             let contact = Contact {
                 overlap,
                 normal,

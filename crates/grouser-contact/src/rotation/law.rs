@@ -1,6 +1,6 @@
 //! What every rotation law takes and gives, and the free sphere.
 
-use crate::{Blocked, Contact, Memory, PairProperties, Real, Response, Vector};
+use crate::{Blocked, Contact, ContactVelocity, Memory, PairProperties, Real, Response, Vector};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::fmt::Debug;
 
@@ -78,6 +78,17 @@ pub trait RotationLaw<T: Real>: Copy + Debug + Send + Sync + Serialize + Deseria
     ) -> Vector<T> {
         let rolled = bodies[0].spin * bodies[0].arm + bodies[1].spin * bodies[1].arm;
         centres - rolled.cross(normal)
+    }
+
+    /// The same along the normal and in the tangent plane.
+    #[inline(always)]
+    fn velocity_in_parts(
+        &self,
+        normal: Vector<T>,
+        centres: Vector<T>,
+        bodies: &[Body<T, Self::Frame>; 2],
+    ) -> ContactVelocity<T> {
+        ContactVelocity::of(self.velocity_at_contact(normal, centres, bodies), normal)
     }
 
     /// Torques and memory after this step.

@@ -134,7 +134,7 @@ impl<T: Real> RotationLaw<T> for ElasticPlasticRolling {
         // Turned with the pair; under growing load the torque is kept, under falling load the angle (as in Mindlin's spring).
         let turned = angle - normal * normal.dot(angle);
         let turned = turned + normal.cross(turned) * (contact.normal_spin * time_step);
-        let overlap_before = (overlap + velocity.dot(normal) * time_step).max(T::ZERO).min(overlap);
+        let overlap_before = (overlap + velocity.normal * time_step).max(T::ZERO).min(overlap);
         let kept_share = (overlap_before + overlap_before) / (overlap_before + overlap);
         let stretched = turned * kept_share + rate * time_step;
         let limit = length * response.normal_force.max(T::ZERO);

@@ -15,8 +15,8 @@
 //! vibration of the overlap, while no force follows the turning, has an unsymmetric stiffness, and beds flutter.
 
 use crate::{
-    ArmNormalisation, Body, Contact, Couples, PairProperties, ParameterError, PlaneShape, Quaternion, Real,
-    Response, RotationLaw, TiltingSettings, Vector, hertz_stiffness,
+    ArmNormalisation, Body, Contact, ContactVelocity, Couples, PairProperties, ParameterError, PlaneShape,
+    Quaternion, Real, Response, RotationLaw, TiltingSettings, Vector, hertz_stiffness,
 };
 use serde::{Deserialize, Serialize};
 
@@ -219,9 +219,25 @@ impl<T: Real, const IS_ROUND: bool> RotationLaw<T> for Tilting<IS_ROUND> {
         centres: Vector<T>,
         bodies: &[Body<T, Quaternion<T>>; 2],
     ) -> Vector<T> {
+        let velocity = self.velocity_in_parts(normal, centres, bodies);
+        normal * velocity.normal + velocity.tangential
+    }
+
+    /// Neither part waits for the other, and the normal one not for the levers: most of a contact's law can begin at once.
+    #[inline(always)]
+    fn velocity_in_parts(
+        &self,
+        normal: Vector<T>,
+        centres: Vector<T>,
+        bodies: &[Body<T, Quaternion<T>>; 2],
+    ) -> ContactVelocity<T> {
         let [first, second] = self.levers(normal, bodies);
         let turned = bodies[0].spin.cross(first) + bodies[1].spin.cross(second);
-        centres - turned + normal * turned.dot(normal)
+        let along = centres.dot(normal);
+        ContactVelocity {
+            normal: along,
+            tangential: centres - turned - normal * (along - turned.dot(normal)),
+        }
     }
 
     #[inline(always)]

@@ -40,10 +40,11 @@ fn turned(frame: &Quaternion<f64>, v: Vector<f64>) -> Vector<f64> {
 
 /// Two equal grains of 10 mm radius and 10 g in contact along x.
 fn touching(overlap: f64, velocity: Vector<f64>, time_step: f64) -> Contact<f64> {
+    let normal = Vector::new(1.0, 0.0, 0.0);
     Contact {
         overlap,
-        normal: Vector::new(1.0, 0.0, 0.0),
-        velocity,
+        normal,
+        velocity: ContactVelocity::of(velocity, normal),
         normal_spin: 0.0,
         effective_radius: 5e-3,
         effective_mass: 5e-3,

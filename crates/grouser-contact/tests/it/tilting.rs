@@ -189,7 +189,11 @@ fn force_times_velocity_is_what_the_motion_and_the_ledger_account_for() {
             |k: u32, arm| Body { arm, spin: any(k), inverse_moment: 1.0, frame: some_quaternion(n + k) };
         let (centres, bodies) = (any(1), [body(5, 0.01), body(6, 0.02)]);
         let velocity = law.velocity_at_contact(normal, centres, &bodies);
-        let contact = Contact { normal, velocity, ..touching(1e-5, velocity, 1e-6) };
+        let parts = law.velocity_in_parts(normal, centres, &bodies);
+        assert!(
+            (parts.normal - centres.dot(normal)).abs() < 1e-15 && parts.tangential.dot(normal).abs() < 1e-14
+        );
+        let contact = Contact { normal, velocity: parts, ..touching(1e-5, velocity, 1e-6) };
         let (response, _) = HertzMindlin::<false, false>.respond(&contact, &pair, Vector::ZERO);
         let half = 0.5 * response.normal_force;
         let (couples, built_up) = law.couples(&contact, &pair, &response, &bodies, half);

@@ -41,7 +41,10 @@ impl Plain {
                 let contact = Contact {
                     overlap,
                     normal,
-                    velocity: a.velocity - b.velocity - (a.spin * arms[0] + b.spin * arms[1]).cross(normal),
+                    velocity: ContactVelocity::of(
+                        a.velocity - b.velocity - (a.spin * arms[0] + b.spin * arms[1]).cross(normal),
+                        normal,
+                    ),
                     normal_spin: 0.5 * (a.spin + b.spin).dot(normal),
                     effective_radius: a.radius * b.radius / (a.radius + b.radius),
                     effective_mass: a.mass * b.mass / (a.mass + b.mass),

@@ -167,6 +167,36 @@ fn angular_grains_give_the_same_bytes_on_any_threads_and_after_any_restart() {
     assert!(results[0] == postcard::to_allocvec(&split).unwrap(), "restart, phases and instruction sets");
 }
 
+fn alike_on_every_instruction_set<const IS_ROUND: bool>(shape: GrainShape) {
+    let settings = TiltingSettings { lift_damping: 1.0, ..TiltingSettings::of(shape) };
+    let rotation = Tilting::<IS_ROUND>::new(&settings).unwrap();
+    let after = |set| {
+        let (spheres, settings) = falling_column::<F64>(300, 7);
+        let law = Rotating { forces: HertzMindlin::<false, false>, rotation };
+        let mut bed = Bed::new(spheres, settings, table(0.5, 0.7, Tail::CutCorrected), law).unwrap();
+        bed.grains_mut().turn_randomly(3);
+        for sphere in &mut bed.grains_mut().spheres {
+            sphere.velocity.z = -2.0;
+        }
+        bed.use_instruction_set(set);
+        go_on(&mut bed, 1500);
+        assert!(bed.n_contacts() > 50 && bed.energy().contacts.turning != 0.0);
+        postcard::to_allocvec(&bed).unwrap()
+    };
+    let baseline = after(InstructionSet::Baseline);
+    assert!(baseline == after(InstructionSet::detect()), "widest");
+    #[cfg(target_arch = "x86_64")]
+    if InstructionSet::detect() == InstructionSet::Avx512 {
+        assert!(baseline == after(InstructionSet::Avx2), "AVX2");
+    }
+}
+
+#[test]
+fn angular_grains_give_the_same_bytes_on_every_instruction_set() {
+    alike_on_every_instruction_set::<false>(GrainShape::Angular { aspect_ratio: 0.5 });
+    alike_on_every_instruction_set::<true>(GrainShape::Disc { aspect_ratio: 0.5 });
+}
+
 #[test]
 fn the_ledger_of_angular_grains_balances() {
     let residual = |dt: f64| {
