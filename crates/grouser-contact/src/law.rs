@@ -100,8 +100,9 @@ pub trait ContactLaw<T: Real>: Copy + Debug + Send + Sync + Serialize + Deserial
     }
 }
 
-/// Number of contacts that a kernel works on at once.
-pub const BLOCK: usize = 64;
+/// Number of contacts that a kernel works on at once: many, because each loop over a block ends waiting for its last contacts, but
+/// no more than the first-level cache holds (measured, `docs/performance.md`).
+pub const BLOCK: usize = 128;
 
 /// A value that each contact of a block has, kept as one array a component; `()` takes no bytes and no time.
 pub trait Blocked<T: Real>: Copy + Default + Debug + Send + Sync + 'static {
