@@ -3,7 +3,8 @@
 use crate::block::FrameOf;
 use crate::{Bed, cell_grid};
 use grouser_contact::{
-    Body, Contact, ContactLaw, Frame, PairProperties, Precision, Real, RotationLaw, Sphere, Vector,
+    Body, Contact, ContactLaw, ContactVelocity, Frame, PairProperties, Precision, Real, RotationLaw, Sphere,
+    Vector,
 };
 use serde::{Deserialize, Serialize};
 
@@ -111,15 +112,17 @@ struct Probe<'a, L, P: Precision> {
 }
 
 impl<L: ContactLaw<P::Real>, P: Precision> Probe<'_, L, P> {
-    fn contact(&self, velocity: [f64; 3], time_step: f64) -> Contact<P::Real> {
+    fn contact(&self, [along, aside]: [f64; 2], time_step: f64) -> Contact<P::Real> {
         let [a, b] = self.balls;
         let real = P::Real::from_f64;
         let harmonic = |a: f64, b: f64| real(1.0 / (1.0 / a + 1.0 / b));
-        let [x, y, z] = velocity.map(real);
         Contact {
             overlap: real(self.overlap),
             normal: Vector::new(P::Real::ZERO, P::Real::ZERO, P::Real::ONE),
-            velocity: Vector::new(x, y, z),
+            velocity: ContactVelocity {
+                normal: real(along),
+                tangential: Vector::new(real(aside), P::Real::ZERO, P::Real::ZERO),
+            },
             normal_spin: P::Real::ZERO,
             effective_radius: harmonic(a.radius, b.radius),
             effective_mass: harmonic(a.mass, b.mass),
@@ -129,13 +132,13 @@ impl<L: ContactLaw<P::Real>, P: Precision> Probe<'_, L, P> {
 
     /// Normal force at a speed along the normal [N].
     fn normal_force(&self, speed: f64) -> f64 {
-        let contact = self.contact([0.0, 0.0, speed], 1e-9);
+        let contact = self.contact([speed, 0.0], 1e-9);
         self.law.respond(&contact, self.pair, L::Memory::default()).0.normal_force.to_f64()
     }
 
     /// Tangential force over speed, after `within` [s] of it [kg/s].
     fn sliding_resistance(&self, within: f64) -> f64 {
-        let contact = self.contact([self.speed, 0.0, 0.0], within);
+        let contact = self.contact([0.0, self.speed], within);
         let (response, _) = self.law.respond(&contact, self.pair, L::Memory::default());
         response.tangential_force.norm().to_f64() / self.speed
     }
@@ -155,7 +158,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Probe<'_, L, P> {
             inverse_moment: real(1.0 / (ball.mass * ball.radius * ball.radius)),
             frame: FrameOf::<P::Real, L>::default(),
         };
-        let contact = self.contact([0.0; 3], within);
+        let contact = self.contact([0.0; 2], within);
         let (response, memory) = self.law.respond(&contact, self.pair, L::Memory::default());
         let bodies = [body(a, spin), body(b, P::Real::ZERO)];
         let (couples, _) = self.law.couples(&contact, self.pair, &response, &bodies, memory);
