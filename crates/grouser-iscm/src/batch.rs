@@ -160,41 +160,51 @@ impl Batch {
     ) {
         #[cfg(target_arch = "x86_64")]
         {
-            #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
-            fn with_avx512(
-                batch: &mut Batch,
-                sub: &SubTriangles,
-                spacing: f64,
-                wrench: &mut Wrench,
-                stiffness: &mut Matrix6<f64>,
-            ) {
-                batch.integrate(sub);
-                batch.collect(spacing);
-                batch.add_to(wrench, stiffness);
-            }
-            #[target_feature(enable = "avx2")]
-            fn with_avx2(
-                batch: &mut Batch,
-                sub: &SubTriangles,
-                spacing: f64,
-                wrench: &mut Wrench,
-                stiffness: &mut Matrix6<f64>,
-            ) {
-                batch.integrate(sub);
-                batch.collect(spacing);
-                batch.add_to(wrench, stiffness);
-            }
-            let has_avx512 = is_x86_feature_detected!("avx512f")
-                && is_x86_feature_detected!("avx512dq")
-                && is_x86_feature_detected!("avx512vl");
             // SAFETY: the instructions were just found on this machine.
-            if has_avx512 {
-                return unsafe { with_avx512(self, sub, spacing, wrench, stiffness) };
+            if has_avx512() {
+                return unsafe { self.answer_avx512(sub, spacing, wrench, stiffness) };
             }
+            // SAFETY: as above.
             if is_x86_feature_detected!("avx2") {
-                return unsafe { with_avx2(self, sub, spacing, wrench, stiffness) };
+                return unsafe { self.answer_avx2(sub, spacing, wrench, stiffness) };
             }
         }
+        self.answer_portable(sub, spacing, wrench, stiffness);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
+    fn answer_avx512(
+        &mut self,
+        sub: &SubTriangles,
+        spacing: f64,
+        wrench: &mut Wrench,
+        stiffness: &mut Matrix6<f64>,
+    ) {
+        self.answer_portable(sub, spacing, wrench, stiffness);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn answer_avx2(
+        &mut self,
+        sub: &SubTriangles,
+        spacing: f64,
+        wrench: &mut Wrench,
+        stiffness: &mut Matrix6<f64>,
+    ) {
+        self.answer_portable(sub, spacing, wrench, stiffness);
+    }
+
+    /// Compiled for what every machine has, and into the above for what theirs have.
+    #[inline(always)]
+    fn answer_portable(
+        &mut self,
+        sub: &SubTriangles,
+        spacing: f64,
+        wrench: &mut Wrench,
+        stiffness: &mut Matrix6<f64>,
+    ) {
         self.integrate(sub);
         self.collect(spacing);
         self.add_to(wrench, stiffness);
@@ -336,6 +346,14 @@ impl Batch {
     }
 }
 
+/// Whether this machine has the vectors of eight numbers that [`Batch::answer`] uses.
+#[cfg(target_arch = "x86_64")]
+fn has_avx512() -> bool {
+    is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512vl")
+}
+
 /// Σ a b in a fixed order.
 #[inline(always)]
 fn sum_of_products(a: &Lane, b: &Lane) -> f64 {
@@ -349,66 +367,4 @@ fn sum_of_products(a: &Lane, b: &Lane) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::polygon::{PartialLoad, Sag, by_centres, integrate};
-    use crate::response::{OneArray, Response, Stiff};
-
-    /// Corners with kinks between them, partly covered, partly above the ground, curved.
-    fn corners() -> Vec<Corners> {
-        let mut all = Vec::new();
-        for (z, share, depth) in [
-            ([0.01, 0.031, 0.022], [1.0; 3], [0.01, 0.02, 0.01]),
-            ([0.01, 0.031, 0.022], [0.0, 1.0, 0.6], [-0.001, 0.003, 0.0005]),
-            ([-0.002, 0.004, 0.009], [1.0; 3], [-0.002, 0.004, 0.0009]),
-            ([0.13, 0.149, 0.16], [0.5, 1.0, 0.0], [4e-4, -1e-4, 2e-4]),
-        ] {
-            for sag in [[0.0; 3], [3e-4, -1e-4, 2e-4]] {
-                all.push(Corners { z, share, depth, sag: Sag::new(sag) });
-            }
-        }
-        all
-    }
-
-    fn agree<R: Response>(ground: R, contact: f64) {
-        for resolution in [1, 2, 3, 4, 5] {
-            let sub = SubTriangles::new(resolution);
-            let mut batch = Batch::new();
-            // Twice, as what an earlier batch held must not be seen.
-            for corners in [corners(), corners().split_off(1)] {
-                for corners in &corners {
-                    let answer = integrate(&sub, ground, corners, PartialLoad::Proportional, contact);
-                    batch.push(&[[0.0; 3], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0]], corners, &answer, true);
-                }
-                let (mut wrench, mut stiffness) = (Wrench::default(), Matrix6::zeros());
-                batch.answer(&sub, 0.1, &mut wrench, &mut stiffness);
-                let mut expected = [0.0; 3];
-                for (n, corners) in corners.iter().enumerate() {
-                    let exact = by_centres(&sub, ground, corners, PartialLoad::Proportional, contact);
-                    let near = |a: f64, b: f64, scale: f64| {
-                        assert!((a - b).abs() <= 1e-9 * scale, "{a} {b} {corners:?} {resolution}");
-                    };
-                    let scale = exact.pressure.max(exact.stiffness * 1e-3);
-                    near(batch.pressure[n], exact.pressure, scale);
-                    (0..3).for_each(|k| near(batch.moment[k][n], exact.moment[k], scale));
-                    near(batch.stiffness[n], exact.stiffness, exact.stiffness);
-                    // Over a triangle of 0.1 m the moment about x is Σ p y, that about y −Σ p x.
-                    let sums = [exact.pressure, 0.1 * exact.moment[2], -0.1 * exact.moment[1]];
-                    (0..3).for_each(|k| expected[k] += 0.005 * sums[k]);
-                }
-                batch.clear();
-                for (sum, expected) in [wrench.force.z, wrench.moment.x, wrench.moment.y].iter().zip(expected)
-                {
-                    assert!((sum - expected).abs() <= 1e-9 * expected.abs(), "{sum} {expected}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn many_at_a_time_equal_centre_by_centre() {
-        let pressures: Vec<f64> = (0..40).map(|k| 1e4 * f64::from(k) + 3e3 * f64::from(k * k % 7)).collect();
-        agree(OneArray { pressures: &pressures, per_resolution: 200.0 }, 1e-3);
-        agree(Stiff(1e9), 0.0);
-    }
-}
+mod tests;

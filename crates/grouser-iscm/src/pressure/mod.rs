@@ -7,7 +7,7 @@ mod array;
 mod bekker;
 mod linear;
 mod meirion_griffith_spenko;
-mod noise;
+pub(crate) mod noise;
 mod polynomial;
 mod reece;
 mod spatial;
