@@ -180,6 +180,10 @@ impl FootImprint {
             }
         };
         let mut nodes: Vec<Node> = footing.sites.iter().map(stand).collect();
+        let seen: Vec<(u32, f64)> = footing.depths_beside_prints(|site| nodes[site as usize].depth).collect();
+        for (site, depth) in seen {
+            nodes[site as usize].depth = depth;
+        }
         let seen: Vec<(u32, f64)> = footing.seen_depths(|site| nodes[site as usize].depth).collect();
         for (site, depth) in seen {
             nodes[site as usize].depth = depth;

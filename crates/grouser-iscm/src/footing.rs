@@ -1,6 +1,6 @@
 //! What of an imprint can press on the ground: its points and triangles, found once a drawing.
 
-use crate::imprint::Imprint;
+use crate::imprint::{ACROSS, AROUND, BARELY, Imprint, within};
 use crate::polygon::{PartialLoad, Sag};
 
 /// A point of the ground under running gear.
@@ -46,6 +46,8 @@ pub(crate) struct Footing {
     /// The triangles of which a part is covered.
     pub facets: Vec<Facet>,
     edges: Vec<Edge>,
+    /// Points that lower parts of the gear press down.
+    prints: Vec<Edge>,
     /// Points and their weights, which add up to one for each edge.
     seen: Vec<(u32, f64)>,
 }
@@ -93,6 +95,9 @@ impl Footing {
                 }
             }
         }
+        if partial == PartialLoad::Proportional && !below.is_empty() {
+            footing.see_beside_prints(layers, n_grid, &shares, &mut site_of);
+        }
         for edge in imprint.edges.iter().filter(|edge| site_of[edge.node] != NONE).collect::<Vec<_>>() {
             let (site, first) = (site_of[edge.node], footing.seen.len());
             for &(n, weight) in edge.seen.iter().filter(|(_, weight)| *weight > 0.0) {
@@ -102,6 +107,45 @@ impl Footing {
             footing.edges.push(Edge { site, seen: first..footing.seen.len() });
         }
         footing
+    }
+
+    /// Where a lower part of the gear has pressed a point down, what a higher one covers of the point's cell still stands on the ground
+    /// beside that print: it sees the ground of the neighbours that it presses itself.
+    fn see_beside_prints(&mut self, layers: &[Imprint], n_grid: usize, shares: &[f64], site_of: &mut [u32]) {
+        let Some((imprint, below)) = layers.split_last() else { return };
+        let n_x = imprint.n_x;
+        let printed: Vec<f64> = (0..imprint.nodes.len())
+            .map(|n| within(1.0 - uncovered(below, imprint.i_0 + n % n_x, imprint.j_0 + n / n_x)))
+            .collect();
+        for n in (0..printed.len()).filter(|&n| printed[n] > 0.0) {
+            if site_of[n] == NONE {
+                continue;
+            }
+            let (first, mut left, mut sum) = (self.seen.len(), 1.0, 0.0);
+            for (k, (di, dj)) in AROUND.into_iter().enumerate() {
+                let (a, b) = ((n % n_x).wrapping_add_signed(di), (n / n_x).wrapping_add_signed(dj));
+                if a >= n_x || b >= imprint.n_y {
+                    continue;
+                }
+                let near = b * n_x + a;
+                let weight = (1.0 - printed[near]) * within(imprint.nodes[near].coverage);
+                if k < 4 {
+                    left -= weight;
+                }
+                let weight = printed[n] * weight * if k < 4 { 1.0 } else { ACROSS * f64::max(left, 0.0) };
+                if weight > 0.0 {
+                    let seen = self.site((a, b), imprint, n_grid, shares, site_of);
+                    self.seen.push((seen, weight));
+                    sum += weight;
+                }
+            }
+            if sum > 0.0 {
+                let own = 1.0 - printed[n] + printed[n] * BARELY * f64::max(left, 0.0);
+                self.seen.push((site_of[n], own));
+                self.seen[first..].iter_mut().for_each(|seen| seen.1 /= sum + own);
+                self.prints.push(Edge { site: site_of[n], seen: first..self.seen.len() });
+            }
+        }
     }
 
     /// The site at node (`i`, `j`) of the window, a new one where there was none.
@@ -131,9 +175,18 @@ impl Footing {
         site_of[n]
     }
 
+    /// Depth below the ground that points see which are pressed down by lower parts of the gear, from each point's `own` depth \[m\].
+    pub fn depths_beside_prints(&self, own: impl Fn(u32) -> f64) -> impl Iterator<Item = (u32, f64)> {
+        self.seen_by(&self.prints, own)
+    }
+
     /// The depth below the ground that each edge sees, from each point's `own` depth \[m\].
     pub fn seen_depths(&self, own: impl Fn(u32) -> f64) -> impl Iterator<Item = (u32, f64)> {
-        self.edges.iter().map(move |edge| {
+        self.seen_by(&self.edges, own)
+    }
+
+    fn seen_by(&self, edges: &[Edge], own: impl Fn(u32) -> f64) -> impl Iterator<Item = (u32, f64)> {
+        edges.iter().map(move |edge| {
             let seen = &self.seen[edge.seen.clone()];
             (edge.site, seen.iter().map(|&(site, weight)| weight * own(site)).sum())
         })
@@ -157,4 +210,58 @@ pub(crate) fn uncovered(layers: &[Imprint], i: usize, j: usize) -> f64 {
         }
     }
     free
+}
+
+#[cfg(test)]
+mod tests {
+    use grouser_geometry::{HeightGrid, Pose, Vec3};
+
+    use crate::contact::{FootImprint, Integration};
+    use crate::imprint::{Imprint, Plate};
+    use crate::polygon::{PartialLoad, SubTriangles};
+    use crate::pressure::{Linear, PressureArray, PressureField, PressureLaw};
+    use crate::terrain::Terrain;
+
+    /// Mean over places of force on flat shoes with a grouser each that stand in their own print, over the exact one, less one \[-\].
+    fn error(spacing: f64) -> f64 {
+        let law = PressureLaw::Linear(Linear { stiffness: 1e6 });
+        let (partial, n_shoes, pitch) = (PartialLoad::Proportional, 10, 0.104);
+        let plate = Plate { along: [-0.0416, 0.0416], across: [-0.3, 0.3], depth: 0.03 };
+        let grouser = Plate { along: [-0.02, 0.02], across: [-0.3, 0.3], depth: 0.06 };
+        let (z_plate, z_grouser) = (0.10, 0.13);
+        let exact = f64::from(n_shoes) * 0.6 * 1e6 * (0.04 * z_grouser + 0.0432 * z_plate);
+        let places = 16;
+        let mean = (0..places).map(|place| {
+            let grid = HeightGrid::covering([-0.5, -0.5], [2.0, 1.0], spacing, |_, _| 0.0).unwrap();
+            let array = PressureArray::new(&law, 0.005, 0.5).unwrap();
+            let mut terrain = Terrain::new(grid, PressureField::uniform(array)).unwrap();
+            let blank = || Imprint::new(terrain.grid(), [-0.2, -0.4], [1.3, 0.4], 1.0, partial);
+            let (mut grousers, mut shoes) = (blank(), blank());
+            for k in 0..n_shoes {
+                let x = f64::from(k) * pitch + f64::from(place) * spacing / f64::from(places);
+                let at = Pose::translation(x, 0.003, -z_plate + plate.depth);
+                grousers.draw_plate(&at, &grouser, 0);
+                shoes.draw_plate(&at, &plate, 0);
+            }
+            grousers.carry_edges(terrain.grid(), &Vec3::y());
+            shoes.carry_edges(terrain.grid(), &Vec3::y());
+            let foot = FootImprint::new(
+                vec![grousers, shoes, blank()],
+                Vec3::zeros(),
+                terrain.grid().n_x(),
+                partial,
+            );
+            foot.stamp(&mut terrain, &Pose::identity());
+            let integration = Integration { sub_triangles: SubTriangles::new(4), partial };
+            foot.load(&terrain, &Pose::identity(), &integration, |_| ()).wrench.force.z
+        });
+        mean.sum::<f64>() / f64::from(places) / exact - 1.0
+    }
+
+    #[test]
+    fn shoes_are_carried_beside_the_prints_of_their_grousers() {
+        // Where plates saw the ground in the grousers' prints they lost −17, −29, −23, −22 and −15 %.
+        let errors = [0.05, 0.04, 0.025, 0.02, 0.0125].map(error);
+        assert!(errors.iter().all(|error| error.abs() < 0.04), "{errors:?}");
+    }
 }

@@ -294,19 +294,20 @@ impl Imprint {
 
 /// How far the ground at a point counts as the ground under the gear: footprints take points within its outline, of whose cells it
 /// covers half or more. A ramp, so that nothing jumps as an edge passes a point.
-fn within(coverage: f64) -> f64 {
+pub(crate) fn within(coverage: f64) -> f64 {
     (50.0 * coverage - 24.0).clamp(0.0, 1.0)
 }
 
 /// Weight of a point's own ground beside a neighbour within the gear.
-const BARELY: f64 = 0.02;
+pub(crate) const BARELY: f64 = 0.02;
 
 /// Share of a cell below which the height of the gear there is partly carried on from its neighbours.
 const HARDLY_COVERED: f64 = 0.25;
 /// Weight of a neighbour across the corner, where one along the axes counts one.
-const ACROSS: f64 = 0.05;
+pub(crate) const ACROSS: f64 = 0.05;
 /// The neighbours of a point.
-const AROUND: [(isize, isize); 8] = [(-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (1, -1), (-1, 1), (1, 1)];
+pub(crate) const AROUND: [(isize, isize); 8] =
+    [(-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (1, -1), (-1, 1), (1, 1)];
 
 /// Width of a cell of the grid along a horizontal direction, per spacing: 1 along the axes, √2 across.
 ///
