@@ -41,6 +41,7 @@ mod bed_zone;
 mod block;
 mod border;
 mod candidates;
+mod carry_over;
 mod cell_grid;
 mod domain;
 mod energy;

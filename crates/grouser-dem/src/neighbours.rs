@@ -2,6 +2,7 @@
 
 use crate::active_zone::Zone;
 use crate::candidates::Candidates;
+use crate::carry_over::{OldLists, wake};
 use crate::cell_grid::CellGrid;
 use crate::large_grains::{LargeGrains, lists_of_large_grains};
 use crate::plane::{Plane, PlaneList};
@@ -155,18 +156,22 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
             .collect();
         let mut large = lists_of_large_grains(&self.levels, &grid, spheres, domain, self.skin, &is_asleep);
         // Memory comes from the old lists, or from those who slept.
-        let old = Lookup::new(&self.slabs);
+        let old = OldLists::new(&self.slabs, &order, grains.len());
         let slept = zone.as_ref().filter(|_| !parted.is_empty()).map(|zone| &zone.sleepers);
-        let slept_with = |i: u32, j: u32| slept?.recall(grains.ids[i as usize], grains.ids[j as usize]);
-        slabs.par_iter_mut().for_each(|slab| carry_over(slab, &order, |i, j| old.memory(i, j), slept_with));
+        old.carry_over(&mut slabs);
         for (level, before) in large.iter_mut().zip(&self.large) {
-            let recall = |i, j| before.recall(i, j);
-            level.slabs.par_iter_mut().for_each(|slab| carry_over(slab, &order, recall, slept_with));
+            old.carry_over_large(level, before);
+        }
+        if let Some(slept) = slept {
+            let ids = &grains.ids;
+            let of_sleepers = |i: u32, j: u32| slept.recall(ids[i as usize], ids[j as usize]);
+            let all = slabs.iter_mut().chain(large.iter_mut().flat_map(|level| &mut level.slabs));
+            all.par_bridge().for_each(|slab| wake(slab, of_sleepers));
         }
         for slab in &mut slabs {
             let list = |(index, plane)| {
                 let remembered = |grain: u32| {
-                    let old = old.plane_memory(index, order[grain as usize]);
+                    let old = old.plane_memory(index, grain);
                     old.or_else(|| slept?.recall_plane(index, grains.ids[grain as usize])).unwrap_or_default()
                 };
                 let moving = slab.grains().filter(|&grain| is_asleep.get(grain as usize) != Some(&true));
@@ -222,51 +227,5 @@ impl<P: Precision, M: Memory<P::Real>> Neighbours<P, M> {
     pub fn bytes(&self) -> usize {
         self.all_slabs().map(Slab::bytes).sum::<usize>()
             + size_of::<Vector<P::Coordinate>>() * self.reference.capacity()
-    }
-}
-
-/// The old lists, found by grain.
-struct Lookup<'a, T: Real, M> {
-    slabs: &'a [Slab<T, M>],
-    slab_of: Vec<u32>,
-}
-
-impl<'a, T: Real, M: Memory<T>> Lookup<'a, T, M> {
-    fn new(slabs: &'a [Slab<T, M>]) -> Self {
-        let mut slab_of = Vec::with_capacity(slabs.iter().map(|slab| slab.n_grains as usize).sum());
-        for (index, slab) in slabs.iter().enumerate() {
-            slab_of.resize(slab_of.len() + slab.n_grains as usize, index as u32);
-        }
-        Self { slabs, slab_of }
-    }
-
-    /// Memory of the pair of old grains (i, j), seen from `i`; `None` when the pair did not touch.
-    fn memory(&self, i: u32, j: u32) -> Option<M> {
-        let seek = |i: u32, j: u32| self.slabs[*self.slab_of.get(i as usize)? as usize].recall(i, j);
-        seek(i, j).or_else(|| seek(j, i).map(M::seen_from_the_other))
-    }
-
-    /// What old grain `grain` remembers of plane `plane`, if it was listed there.
-    fn plane_memory(&self, plane: usize, grain: u32) -> Option<M> {
-        let slab = &self.slabs[*self.slab_of.get(grain as usize)? as usize];
-        slab.planes.get(plane)?.memory_of(grain)
-    }
-}
-
-/// Fills the memory of a new slab from what pairs of old grains remember (`order[new]` is the old number of a grain), or else
-/// from `slept`, by new numbers.
-fn carry_over<T: Real, M: Memory<T>>(
-    slab: &mut Slab<T, M>,
-    order: &[u32],
-    recall: impl Fn(u32, u32) -> Option<M>,
-    slept: impl Fn(u32, u32) -> Option<M>,
-) {
-    for place in 0..slab.pairs.len() {
-        let [i, j] = slab.pairs[place].grains();
-        let remembered = recall(order[i as usize], order[j as usize]);
-        if let Some(memory) = remembered.or_else(|| slept(i, j)) {
-            slab.memory[place] = memory;
-            slab.touched[place / 64] |= 1 << (place % 64);
-        }
     }
 }

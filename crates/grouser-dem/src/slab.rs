@@ -136,22 +136,31 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
         self.first_grain..self.first_grain + self.n_grains
     }
 
-    /// Place of the pair (i, j); with rows, `i` must be a grain of this slab.
-    pub fn find(&self, i: u32, j: u32) -> Option<usize> {
-        let (from, to) = if self.rows.is_empty() {
+    /// Places of the pairs whose first grain is `i`; with rows, `i` must be a grain of this slab.
+    pub fn row(&self, i: u32) -> std::ops::Range<usize> {
+        if self.rows.is_empty() {
             let place_of = |i| self.pairs.partition_point(|pair| pair.grains()[0] < i);
-            (place_of(i), place_of(i + 1))
-        } else {
-            let row = (i - self.first_grain) as usize;
-            (self.rows[row] as usize, self.rows[row + 1] as usize)
-        };
-        (from..to).find(|&place| self.pairs[place].grains()[1] == j)
+            return place_of(i)..place_of(i + 1);
+        }
+        let row = (i - self.first_grain) as usize;
+        self.rows[row] as usize..self.rows[row + 1] as usize
     }
 
-    /// What the pair (i, j) remembers, as [`Slab::find`]; `None` when it did not touch.
+    /// Place of the pair (i, j), as [`Slab::row`].
+    pub fn find(&self, i: u32, j: u32) -> Option<usize> {
+        self.row(i).find(|&place| self.pairs[place].grains()[1] == j)
+    }
+
+    /// What the pair (i, j) remembers, as [`Slab::row`]; `None` when it did not touch.
     pub fn recall(&self, i: u32, j: u32) -> Option<M> {
         let place = self.find(i, j)?;
         self.has_touched(place).then(|| self.memory[place])
+    }
+
+    /// The pair at `place` touches and remembers `memory`.
+    pub fn remember(&mut self, place: usize, memory: M) {
+        self.memory[place] = memory;
+        self.touched[place / 64] |= 1 << (place % 64);
     }
 
     /// The pair at `place` touched at the last force pass.
