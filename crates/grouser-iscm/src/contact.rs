@@ -99,9 +99,8 @@ struct Node {
 impl FootImprint {
     /// Running gear drawn as `layers` over a terrain of `n_grid` nodes along x, the lowest first and wheels last.
     pub(crate) fn new(layers: Vec<Imprint>, reference: Vec3, n_grid: usize, partial: PartialLoad) -> Self {
-        let n = layers.len();
-        let footing = |k: usize| Footing::new(&layers[..=k], n_grid, partial, k + 1 == n);
-        Self { footings: (0..n).map(footing).collect(), layers, reference, tracks: Vec::new() }
+        let footing = |k: usize| Footing::new(&layers, k, n_grid, partial);
+        Self { footings: (0..layers.len()).map(footing).collect(), layers, reference, tracks: Vec::new() }
     }
 
     /// Force of the `terrain` on the gear after it moved by `motion` since the imprints were drawn.
@@ -131,8 +130,8 @@ impl FootImprint {
         for layer in 0..self.layers.len() {
             let nodes = self.nodes(layer, terrain, motion, &followed, PartialLoad::Proportional);
             for (site, node) in self.footings[layer].sites.iter().zip(nodes) {
-                if site.is_inside && node.depth > 0.0 {
-                    terrain.stamp(site.on_grid, node.height);
+                if site.share > 0.0 {
+                    site.stand.stamp(terrain, site.on_grid, node.height);
                 }
             }
         }
@@ -160,7 +159,7 @@ impl FootImprint {
         let has_shifts = !followed.shifts.is_empty() && layer + 1 < self.layers.len();
         let original = terrain.grid().heights();
         let stand = |site: &Site| {
-            let (z_0, ground) = (original[site.on_grid], terrain.height(site.on_grid));
+            let (z_0, ground) = (original[site.on_grid], site.stand.height(terrain, site.on_grid));
             let position = Vec3::from(site.position);
             let rise = |d: Vec3| d.z - site.slope[0] * d.x - site.slope[1] * d.y;
             let mut h = position.z + rise(turn * position + shift);
@@ -180,10 +179,6 @@ impl FootImprint {
             }
         };
         let mut nodes: Vec<Node> = footing.sites.iter().map(stand).collect();
-        let seen: Vec<(u32, f64)> = footing.depths_beside_prints(|site| nodes[site as usize].depth).collect();
-        for (site, depth) in seen {
-            nodes[site as usize].depth = depth;
-        }
         let seen: Vec<(u32, f64)> = footing.seen_depths(|site| nodes[site as usize].depth).collect();
         for (site, depth) in seen {
             nodes[site as usize].depth = depth;
@@ -302,10 +297,10 @@ impl<'a> Ground<'a> {
         let field = terrain.field();
         if field.is_per_node() {
             let pressures = on_grid.map(|node| field.of_node(node));
-            self.soil(ThreeArrays { pressures, per_resolution }, on_grid, corners, integration)
+            self.soil(ThreeArrays { pressures, per_resolution }, corners, integration)
         } else {
             let pressures = field.of_node(0);
-            self.soil(OneArray { pressures, per_resolution }, on_grid, corners, integration)
+            self.soil(OneArray { pressures, per_resolution }, corners, integration)
         }
     }
 
@@ -313,7 +308,6 @@ impl<'a> Ground<'a> {
     fn soil(
         &self,
         virgin: impl Response,
-        on_grid: &[usize; 3],
         corners: &Corners,
         Integration { sub_triangles, partial }: &Integration,
     ) -> Answer {
@@ -322,7 +316,7 @@ impl<'a> Ground<'a> {
                 integrate(sub_triangles, virgin, corners, *partial, contact_distance)
             }
             Unloading::Elastic { stiffness } => {
-                let residual = on_grid.map(|node| self.terrain.sinkage()[node]);
+                let residual = [0, 1, 2].map(|k| corners.z[k] - corners.depth[k]);
                 integrate(sub_triangles, Reloaded { virgin, stiffness, residual }, corners, *partial, 0.0)
             }
         }

@@ -55,6 +55,14 @@ pub struct Terrain {
     sinkage: Vec<f64>,
     deepest: Vec<f64>,
     loadings: Vec<u32>,
+    beside: Vec<Beside>,
+}
+
+/// Ground of a point's cell that is not the point's own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Beside {
+    sinkage: f64,
+    deepest: f64,
 }
 
 /// Why a terrain cannot be used.
@@ -113,6 +121,7 @@ impl Terrain {
             sinkage: vec![0.0; n],
             deepest: vec![0.0; n],
             loadings: vec![0; n],
+            beside: vec![Beside::default(); n],
         })
     }
 
@@ -180,6 +189,12 @@ impl Terrain {
         self.grid.heights()[node] - self.sinkage[node]
     }
 
+    /// Present height of the ground beside a node, in the part of its cell that another part of the gear pressed \[m\].
+    #[inline(always)]
+    pub(crate) fn height_beside(&self, node: usize) -> f64 {
+        self.grid.heights()[node] - self.beside[node].sinkage
+    }
+
     /// Sinkage of all nodes below the undisturbed ground \[m\].
     pub fn sinkage(&self) -> &[f64] {
         &self.sinkage
@@ -201,26 +216,48 @@ impl Terrain {
         self.kind[node] == GroundKind::Fixed
     }
 
-    /// Presses a node down to `height` \[m\] and lets it spring back where the ground is elastic.
+    /// Presses a node and its whole cell down to `height` \[m\] and lets them spring back where the ground is elastic.
     pub fn stamp(&mut self, node: usize, height: f64) {
+        self.stamp_point(node, height);
+        self.stamp_beside(node, height);
+    }
+
+    /// Presses the ground beside a node down to `height` \[m\].
+    pub(crate) fn stamp_beside(&mut self, node: usize, height: f64) {
+        if self.is_fixed(node) || height >= self.height_beside(node) {
+            return;
+        }
+        let Beside { sinkage, deepest } = self.beside[node];
+        let deepest = deepest.max(self.grid.heights()[node] - height);
+        self.beside[node] = Beside { sinkage: self.left(node, sinkage, deepest, height), deepest };
+    }
+
+    /// Presses the ground at a node down to `height` \[m\].
+    pub(crate) fn stamp_point(&mut self, node: usize, height: f64) {
         if self.is_fixed(node) || height >= self.height(node) {
             return;
         }
         let sinkage = self.grid.heights()[node] - height;
         self.deepest[node] = self.deepest[node].max(sinkage);
         self.loadings[node] += 1;
-        self.sinkage[node] = match self.unloading {
+        self.sinkage[node] = self.left(node, self.sinkage[node], self.deepest[node], height);
+    }
+
+    /// Sinkage that is left at a node after it was pressed down to `height` \[m\].
+    fn left(&self, node: usize, before: f64, deepest: f64, height: f64) -> f64 {
+        match self.unloading {
             // The ground follows the gear up again over the contact distance, so that a machine that stands still stays carried.
-            Unloading::Plastic { contact_distance } => self.sinkage[node].max(sinkage - contact_distance),
+            Unloading::Plastic { contact_distance } => {
+                before.max(self.grid.heights()[node] - height - contact_distance)
+            }
             Unloading::Elastic { stiffness } => {
                 let resolution = self.field.resolution();
-                let deepest = self.deepest[node];
                 let (pressure, _) =
                     crate::pressure::interpolate(self.field.of_node(node), deepest / resolution);
                 // What was left before stays at least: reloading below the deepest point leaves no deeper rut.
-                self.sinkage[node].max(deepest - pressure / stiffness)
+                before.max(deepest - pressure / stiffness)
             }
-        };
+        }
     }
 }
 

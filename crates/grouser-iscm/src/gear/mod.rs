@@ -166,9 +166,8 @@ impl Foot {
             wheel.draw(pose, travel, &mut wheels, owner as u16);
         }
         layers.push(wheels);
-        let axle = pose.rotation * Vec3::y();
         for layer in &mut layers {
-            layer.carry_edges(grid, &axle);
+            layer.carry_edges(grid);
         }
         let mut drawn = FootImprint::new(layers, pose.translation.vector, grid.n_x(), partial);
         for track in &mut tracks {

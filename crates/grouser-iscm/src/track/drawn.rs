@@ -5,7 +5,7 @@ use nalgebra::{Matrix6, Vector6};
 
 use super::{Chain, Lay, Touch, TrackShape};
 use crate::contact::FootImprint;
-use crate::footing::uncovered;
+use crate::footing::{Stand, share};
 use crate::gear::{Belt, Wheel};
 use crate::mechanism::GRAVITY;
 use crate::pressure::interpolate;
@@ -45,6 +45,8 @@ struct TouchedNode {
     /// Underside as drawn \[m\].
     position: Vec3,
     slope: [f64; 2],
+    /// Which ground of its cell the shoe stands on.
+    stand: Stand,
     /// Covered part of its cell \[m²\].
     area: f64,
 }
@@ -148,13 +150,13 @@ impl DrawnTrack {
                         continue;
                     }
                     let (i_g, j_g) = (drawn.i_0 + i, drawn.j_0 + j);
-                    let area =
-                        gear.coverage * uncovered(&imprint.layers[..layer], i_g, j_g) * drawn.spacing.powi(2);
+                    let area = share(&imprint.layers, layer, i_g, j_g) * drawn.spacing.powi(2);
                     if area == 0.0 {
                         continue;
                     }
                     let on_grid = j_g * n_grid + i_g;
-                    if gear.height > terrain.height(on_grid) + WITHIN_REACH {
+                    let stand = Stand::new(&imprint.layers, layer, i, j);
+                    if gear.height > stand.height(terrain, on_grid) + WITHIN_REACH {
                         continue;
                     }
                     let [x, y] = drawn.position(i, j);
@@ -162,17 +164,17 @@ impl DrawnTrack {
                     let normal = Vec3::new(-gear.slope[0], -gear.slope[1], 1.0);
                     let arm = (position - imprint.reference).cross(&normal);
                     let link = self.links[(gear.owner - self.owners.start) as usize];
-                    let share = link.map_or(0.0, |a| {
+                    let along_link = link.map_or(0.0, |a| {
                         let along = joints[a + 1] - joints[a];
                         (position - joints[a]).dot(&along) / along.norm_squared()
                     });
                     self.touches.push(Touch {
                         link,
-                        share,
+                        share: along_link,
                         normal: [normal.dot(&self.axes[0]), normal.dot(&self.axes[1])],
                         with_body: Vector6::new(normal.x, normal.y, normal.z, arm.x, arm.y, arm.z),
                     });
-                    self.nodes.push(TouchedNode { on_grid, position, slope: gear.slope, area });
+                    self.nodes.push(TouchedNode { on_grid, position, slope: gear.slope, stand, area });
                 }
             }
         }
@@ -187,7 +189,7 @@ impl DrawnTrack {
             .map(|node| {
                 let d = motion.rotation * node.position + motion.translation.vector - node.position;
                 let height = node.position.z + d.z - node.slope[0] * d.x - node.slope[1] * d.y;
-                (node.on_grid, height, terrain.height(node.on_grid), node.area)
+                (node.on_grid, height, node.stand.height(terrain, node.on_grid), node.area)
             })
             .collect();
         self.chain.settle(&self.lower, &self.at_rest, &self.touches, |n, rise| {
@@ -195,7 +197,7 @@ impl DrawnTrack {
             if height + rise >= ground {
                 return (0.0, 0.0);
             }
-            let (p, slope) = answer(terrain, on_grid, height + rise);
+            let (p, slope) = answer(terrain, on_grid, height + rise, ground);
             (p * area, slope * area)
         })
     }
@@ -236,9 +238,9 @@ pub(crate) fn belt_down(down: Vec3) -> [f64; 2] {
 }
 
 /// Pressure \[Pa\] of the ground at a node under gear whose underside lies at `height` \[m\], and its slope \[Pa/m\].
-fn answer(terrain: &Terrain, node: usize, height: f64) -> (f64, f64) {
+fn answer(terrain: &Terrain, node: usize, height: f64, ground: f64) -> (f64, f64) {
     let z = terrain.grid().heights()[node] - height;
-    let depth = terrain.height(node) - height;
+    let depth = ground - height;
     if depth <= 0.0 {
         return (0.0, 0.0);
     }
