@@ -130,6 +130,9 @@ impl<M> Contacts<M> {
             let in_frame = carrier.place_in_frame(&position);
             // 2. Where the distance from the centre is critical.
             let touches = touches(surface, triangles, &in_frame, radius);
+            if touches.is_empty() {
+                continue;
+            }
             let normals: Vec<Vec3> = touches.iter().map(|t| normal_of(t, &in_frame, surface)).collect();
             // 3. What each remembers.
             let memories = recall(&self.remembered, near.id, &touches, &normals);
