@@ -1,6 +1,7 @@
 //! One pass over the grains near a surface: touches, memories, law, equal and opposite forces.
 
 use crate::candidates::{Candidates, centre};
+use crate::spread::Remainder;
 use crate::touches::{Touch, touches};
 use grouser_contact::{
     Body, Contact, ContactLaw, ContactLedger, ContactVelocity, Frame, Load, Memory, PairTable, Precision,
@@ -27,6 +28,11 @@ pub(crate) trait Carrier {
     /// Inverse of the mass that moves at a touch [1/kg]; zero where the motion is prescribed.
     #[inline]
     fn inverse_mass(&self, _: &Touch) -> f64 {
+        0.0
+    }
+    /// What the surface's mesh yields to a contact by itself [m/N], so that the law must not yield it again.
+    #[inline]
+    fn local_compliance(&self) -> f64 {
         0.0
     }
     /// Takes a force on the surface, in the world's frame [N].
@@ -154,7 +160,16 @@ impl<M> Contacts<M> {
                 }
                 let pair = step.table.pair(sphere.material, material);
                 let mut energy = ContactLedger::default();
-                let (response, mut memory) = step.law.respond(&contact, pair, memory);
+                let compliance = carrier.local_compliance();
+                let mut held_by_mesh = 0.0;
+                if compliance > 0.0 {
+                    let stiffness = pair.normal_modulus.to_f64() * radius.sqrt();
+                    let approach = Remainder { compliance, stiffness }.approach(overlap);
+                    contact.overlap = P::Real::from_f64(approach.whole);
+                    held_by_mesh = approach.held_by_mesh;
+                }
+                let (mut response, mut memory) = step.law.respond(&contact, pair, memory);
+                response.energy.normal_elastic -= P::Real::from_f64(held_by_mesh);
                 let arm = P::Real::from_f64(-touch.distance);
                 let mut torque = contact.normal.cross(response.tangential_force) * arm;
                 if !<L::Rotation as RotationLaw<P::Real>>::IS_SPHERE {

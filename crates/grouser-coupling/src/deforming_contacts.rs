@@ -4,6 +4,7 @@ use crate::candidates::{Candidates, Margin};
 use crate::closest_point::natural_coordinates;
 use crate::contact_pass::{Carrier, Contacts, Deepest, Seen, Step, asks_for_orientations};
 use crate::mirror::Mirror;
+use crate::spread::Spread;
 use crate::touches::Touch;
 use grouser_contact::{ContactLaw, ContactLedger, Load, Memory, Precision, Sphere};
 use grouser_geometry::{Orientation, TriangleSurface, Vec3};
@@ -25,6 +26,8 @@ pub struct DeformingContacts<M> {
     force: Vec<Vec3>,
     /// Inverse of the mass that moves with each vertex [1/kg].
     inverse_mass: Vec<f64>,
+    /// What the mesh yields to a contact by itself [m/N].
+    local_compliance: f64,
     /// What any vertex has moved since the forces were asked for [m].
     moved: f64,
     material: u32,
@@ -39,6 +42,7 @@ struct Deforming<'a> {
     velocity: &'a [Vec3],
     force: &'a mut [Vec3],
     inverse_mass: &'a [f64],
+    local_compliance: f64,
 }
 
 impl Deforming<'_> {
@@ -81,6 +85,9 @@ impl Carrier for Deforming<'_> {
         let vertices = self.vertices(touch);
         (0..3).map(|k| weights[k] * weights[k] * self.inverse_mass[vertices[k]]).sum()
     }
+    fn local_compliance(&self) -> f64 {
+        self.local_compliance
+    }
     /// Shares the force out by natural coordinates (P0 Eq. 42).
     fn receive(&mut self, touch: &Touch, point: &Vec3, force: Vec3) {
         let weights = natural_coordinates(point, &self.surface.corners(touch.triangle as usize));
@@ -101,12 +108,22 @@ impl<M> DeformingContacts<M> {
             inverse_mass: vec![0.0; vertices.len()],
             surface: TriangleSurface { vertices, triangles: mirror.triangles().to_vec() },
             mirror,
+            local_compliance: 0.0,
             moved: 0.0,
             material,
             margin,
             candidates: Candidates::default(),
             contacts: Contacts::default(),
         }
+    }
+
+    /// The same contacts with forces spread over the surface, whose nodes lie at `reference(node)` [m] while it is not deformed, and
+    /// with what such forces press into the mesh taken from the law, which must be one of Hertz's normal force. For meshes finer than a
+    /// few contact radii. Call it before [`Self::with_nodal_masses`].
+    pub fn with_spread(mut self, spread: Spread, reference: impl Fn(u32) -> Vec3) -> Self {
+        self.mirror = self.mirror.spread_over(spread.radius, reference);
+        self.local_compliance = spread.compliance();
+        self
     }
 
     /// The same contacts with a surface as heavy as its nodes, `mass(node)` [kg], infinite where held: m* of a contact is then
@@ -183,6 +200,7 @@ impl<M> DeformingContacts<M> {
             velocity: &self.velocity,
             force: &mut self.force,
             inverse_mass: &self.inverse_mass,
+            local_compliance: self.local_compliance,
         };
         let surface = (&self.surface, self.material);
         self.contacts.pass(

@@ -34,6 +34,7 @@ mod coupled_step;
 mod deforming_contacts;
 mod facet;
 mod mirror;
+mod spread;
 mod surface_contacts;
 mod touches;
 
@@ -43,5 +44,6 @@ pub use contact_pass::{Deepest, Seen, Step};
 pub use coupled_step::{MovedGrains, SteppedSolid, coupled_step};
 pub use deforming_contacts::DeformingContacts;
 pub use mirror::{Mirror, MirrorError};
+pub use spread::Spread;
 pub use surface_contacts::SurfaceContacts;
 pub use touches::{Touch, touches};

@@ -121,6 +121,21 @@ impl Mirror {
         vertex
     }
 
+    /// The same triangles, each vertex following what others of this mirror do, by `weights` of pairs of a vertex and its share.
+    pub(crate) fn followed(&self, weights: impl Iterator<Item = Vec<(usize, f64)>>) -> Self {
+        let mut followed = Self { triangles: self.triangles.clone(), first: vec![0], entries: Vec::new() };
+        for of_vertices in weights {
+            let mut of_nodes: BTreeMap<u32, f64> = BTreeMap::new();
+            for (vertex, share) in of_vertices {
+                let entries = self.entries_of(vertex).iter();
+                entries.for_each(|&(node, weight)| *of_nodes.entry(node).or_default() += share * weight);
+            }
+            followed.entries.extend(of_nodes);
+            followed.first.push(followed.entries.len() as u32);
+        }
+        followed
+    }
+
     /// Triangles, as numbers of vertices.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles

@@ -37,6 +37,10 @@ pub struct Tire {
     /// refitted and asked; 0 is every step.
     #[serde(default = "quarter")]
     pub refit_margin: f64,
+    /// Radius over which the force of a grain is spread on the tread [m], so that meshes finer than contacts give Hertz's force; 0 puts
+    /// it on one triangle, as meshes need whose triangles are several times as large as a contact.
+    #[serde(default)]
+    pub contact_spread_m: f64,
 }
 
 /// Pattern of a tread.

@@ -3,7 +3,9 @@
 use super::Row;
 use super::coupling::{Contacts, LAW, RADIUS, TABLE, bead, hertz};
 use grouser_contact::{F64, Load, Sphere, Vector};
-use grouser_coupling::{DeformingContacts, Margin, Mirror, MovedGrains, Step, SteppedSolid, coupled_step};
+use grouser_coupling::{
+    DeformingContacts, Margin, Mirror, MovedGrains, Spread, Step, SteppedSolid, coupled_step,
+};
 use grouser_fem::{
     DynamicsError, Formulation, Material as Elastic, Settings, Solid, SolidError, VolumetricTreatment,
 };
@@ -57,7 +59,6 @@ impl Standing {
         let faces: Vec<Vec<u32>> = top.iter().map(|&f| mesh.facet_nodes(f)).collect();
         let mirror = Mirror::new(&faces, 2).expect("faces of tetrahedra");
         DeformingContacts::new(mirror, |n| self.place(n), 0, Margin::DEFAULT)
-            .with_nodal_masses(|n| self.0.nodal_mass()[n as usize])
     }
 }
 
@@ -70,13 +71,20 @@ struct Impact {
 }
 
 impl Impact {
-    fn new(is_quadratic: bool) -> Self {
+    /// Forces are spread over `spread` [m] where that is above 0.
+    fn new(is_quadratic: bool, spread: f64) -> Self {
         let settings = Settings { formulation: Formulation::FiniteStrain, ..Settings::default() };
         let solid = Standing::block(is_quadratic, settings).expect("a block");
         let mut bead = bead(Vec3::new(0.047, 0.061, 0.05 + 1.01 * RADIUS));
         bead.velocity = Vector::new(0.7, -0.3, -1.0);
         bead.spin = Vector::new(5.0, -8.0, 3.0);
-        Self { contacts: solid.contacts(), solid, bead, load: Load::default() }
+        let mut contacts = solid.contacts();
+        if spread > 0.0 {
+            let spread = Spread { radius: spread, plane_modulus: YOUNG / (1.0 - POISSON * POISSON) };
+            contacts = contacts.with_spread(spread, |n| solid.place(n));
+        }
+        let contacts = contacts.with_nodal_masses(|n| solid.0.nodal_mass()[n as usize]);
+        Self { contacts, solid, bead, load: Load::default() }
     }
 
     fn kick_bead(&mut self, dt: f64) {
@@ -117,8 +125,8 @@ impl Impact {
 }
 
 /// Largest change of a momentum at any step, over it; change of the energy, over it.
-fn balance(is_quadratic: bool, n: u32, share: f64) -> Result<[f64; 2], DynamicsError> {
-    let mut impact = Impact::new(is_quadratic);
+fn balance(is_quadratic: bool, n: u32, share: f64, spread: f64) -> Result<[f64; 2], DynamicsError> {
+    let mut impact = Impact::new(is_quadratic, spread);
     let dt = share * impact.solid.0.stable_time_step().dt;
     let (momenta, energy) = (impact.momenta(), impact.energy());
     let (mut n_touched, mut n_free, mut drift) = (0, 0, 0.0_f64);
@@ -138,15 +146,19 @@ fn balance(is_quadratic: bool, n: u32, share: f64) -> Result<[f64; 2], DynamicsE
 pub fn bead_on_block() -> Vec<Row> {
     let case = ("bead on an elastic block", "conservation");
     let mut rows = Vec::new();
-    for (is_quadratic, n, share) in [(false, 1, 0.4), (false, 4, 0.3), (true, 4, 0.3)] {
-        let label = format!("{} nodes, {n} sub-steps", if is_quadratic { "ten" } else { "four" });
-        let [drift, residual] = balance(is_quadratic, n, share).unwrap_or([f64::NAN; 2]);
+    for (is_quadratic, n, share, spread) in
+        [(false, 1, 0.4, 0.0), (false, 4, 0.3, 0.0), (true, 4, 0.3, 0.0), (false, 4, 0.3, 3.0 * CELL)]
+    {
+        let spread_over = if spread > 0.0 { ", forces spread over three cells" } else { "" };
+        let label =
+            format!("{} nodes, {n} sub-steps{spread_over}", if is_quadratic { "ten" } else { "four" });
+        let [drift, residual] = balance(is_quadratic, n, share, spread).unwrap_or([f64::NAN; 2]);
         let what = format!("{label}: momenta, largest change at a step");
         rows.push(Row::absolute(case, what, "-", drift, (0.0, 1e-12)));
         rows.push(Row::absolute(case, format!("{label}: energy residual"), "-", residual, (0.0, 0.01)));
     }
-    let [coarse, fine] =
-        [0.4, 0.1].map(|share| balance(false, 1, share).map_or(f64::NAN, |[_, residual]| residual.abs()));
+    let [coarse, fine] = [0.4, 0.1]
+        .map(|share| balance(false, 1, share, 0.0).map_or(f64::NAN, |[_, residual]| residual.abs()));
     let order = (coarse / fine).ln() / 4.0_f64.ln();
     rows.push(Row::absolute(case, "order of the energy residual in the step", "-", order, (1.0, 0.3)));
     rows
@@ -157,7 +169,7 @@ pub fn bead_on_block() -> Vec<Row> {
 fn pressed(settings: Settings, is_quadratic: bool, share: f64) -> Result<[f64; 2], DynamicsError> {
     let mut block = Standing::block(is_quadratic, settings).expect("a block");
     block.0.fix("z_min").expect("a box has a bottom");
-    let mut contacts = block.contacts();
+    let mut contacts = block.contacts().with_nodal_masses(|n| block.0.nodal_mass()[n as usize]);
     let dt = 0.7 * block.0.stable_time_step().dt;
     let indentation = (share * CELL).powi(2) / RADIUS;
     let held = bead(Vec3::new(0.047, 0.061, 0.05 + RADIUS - indentation));

@@ -7,6 +7,7 @@ mod coupling;
 mod elastic_block;
 mod precision;
 mod solids;
+mod spread_contact;
 mod two_bodies;
 mod vehicles;
 
@@ -125,6 +126,7 @@ const GRAINS: &[(&str, Rows)] = &[
     ("rolling over triangles", coupling::rolling_over_triangles),
     ("bead on an elastic block", elastic_block::bead_on_block),
     ("bead pressed into an elastic block", elastic_block::bead_pressed),
+    ("bead pressed into ever finer cells", spread_contact::bead_pressed_into_fine_cells),
     ("mixed precision", precision::mixed),
     ("single precision", precision::single),
 ];

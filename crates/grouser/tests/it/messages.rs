@@ -159,6 +159,7 @@ fn wrong_tires_are_refused_with_line_and_remedy() {
         ("wall_thickness_m: 0.016", "wall_thickness_m: 0.0002", "slivers"),
         ("inflation_pa: 1.4e5", "inflation_pa: -1.4e5", "is -140000"),
         ("poisson: 0.45", "poisson: 0.5", "is 0.5"),
+        ("refit_margin: 0.25", "contact_spread_m: 0.002", "is 0.002"),
         ("slip: 0.05", "slip: 5.0", "is 5"),
         ("travel_m: 0.45", "travel_m: 4.5", "is 4.5"),
         ("y: Walled", "y: Periodic", "a tire meets no images"),

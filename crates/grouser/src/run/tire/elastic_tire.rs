@@ -109,8 +109,11 @@ impl<L: Law> ElasticTire<L> {
         let mirror = Mirror::new(&faces, 2)?;
         let is_held = |n: u32| tread.rim.binary_search(&n).is_ok();
         let mass = |n: u32| if is_held(n) { f64::INFINITY } else { tread.solid.nodal_mass()[n as usize] };
-        let contacts =
-            DeformingContacts::new(mirror, |n| tread.place(n), material, margin).with_nodal_masses(mass);
+        let mut contacts = DeformingContacts::new(mirror, |n| tread.place(n), material, margin);
+        if let Some(spread) = tread.spec.spread() {
+            contacts = contacts.with_spread(spread, |n| tread.solid.mesh().nodes[n as usize]);
+        }
+        let contacts = contacts.with_nodal_masses(mass);
         Ok(Self { tread, contacts, sub_steps, contact_work: [0.0; 2], spent: [Duration::ZERO; 2] })
     }
 

@@ -2,7 +2,7 @@
 
 use super::axle::Place;
 use crate::scene::{Tire, TireElements, TireModel, Tread as Pattern};
-use grouser_coupling::MirrorError;
+use grouser_coupling::{MirrorError, Spread};
 use grouser_fem::{
     Formulation, LinearSolver, Material, Settings, Solid, SolidError, State, StaticError, StaticOptions,
     VolumetricTreatment,
@@ -25,6 +25,8 @@ pub struct TreadSpec {
     pub damping: f64,
     /// Inflation [Pa].
     pub inflation: f64,
+    /// Radius over which contact forces are spread [m]; 0 is one triangle.
+    pub contact_spread: f64,
 }
 
 /// Why a tread cannot be built.
@@ -219,7 +221,16 @@ impl TreadSpec {
             },
             damping: tire.damping_s,
             inflation: tire.inflation_pa,
+            contact_spread: tire.contact_spread_m,
         })
+    }
+
+    /// How contact forces are spread; `None` on one triangle.
+    pub fn spread(&self) -> Option<Spread> {
+        let (lambda, mu) = self.rubber.elasticity.lame();
+        // E/(1 − ν²).
+        let plane_modulus = 4.0 * mu * (lambda + mu) / (lambda + 2.0 * mu);
+        (self.contact_spread > 0.0).then_some(Spread { radius: self.contact_spread, plane_modulus })
     }
 
     /// The tread inflated at rest on a held rim, around the origin.

@@ -3,11 +3,13 @@
 use super::{Check, grains};
 use crate::run::Materials;
 use crate::run::shape;
-use crate::scene::{Grains, Roll, Scenario, Side, SubSteps, Tire, Tread};
+use crate::scene::{Grains, Roll, Scenario, Side, SubSteps, Tire, TireModel, Tread};
 use grouser_geometry::{QualityReport, TireError, TireSize};
 
 /// Smallest dihedral angle of a tetrahedron that is no sliver [degrees].
 const LEAST_ANGLE_DEG: f64 = 5.0;
+/// Sides of a face that forces are spread over at least: the mesh then yields as a half-space does within some per cent (`verify --only spread`).
+const LEAST_SPREAD: f64 = 3.0;
 
 pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, (tire, roll): (&Tire, &Roll)) {
     let before = check.problems.len();
@@ -30,6 +32,17 @@ pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, (tire, rol
     let margin = tire.refit_margin;
     let share = "zero or a share of the mean grain radius [-]";
     check.require("tool.refit_margin", margin, not_negative(margin), share, "a length in metres");
+    let spread = tire.contact_spread_m;
+    let radius = "zero, or a radius [m]";
+    check.require("tool.contact_spread_m", spread, not_negative(spread), radius, "millimetres");
+    if spread > 0.0 && tire.model == TireModel::Rigid {
+        check.fail(
+            "tool.contact_spread_m",
+            "a rigid tread yields to no force",
+            "0, or an elastic `model`",
+            "",
+        );
+    }
     if let SubSteps::Fixed(0) = tire.sub_steps {
         check.require("tool.sub_steps", 0.0, false, "at least 1, or Auto", "");
     }
@@ -81,6 +94,14 @@ fn mesh(check: &mut Check, scenario: &Scenario, tire: &Tire) {
                     "more elements, a thicker wall or deeper grooves".to_owned(),
                 );
             }
+            let outer = mesh.facets("outer").expect("treads have an outer surface");
+            let surface = mesh.triangle_surface(outer).0;
+            let least = LEAST_SPREAD * (2.0 * surface.area() / surface.triangles.len() as f64).sqrt();
+            let (path, spread) = ("tool.contact_spread_m", tire.contact_spread_m);
+            let expected =
+                format!("0, or at least {LEAST_SPREAD} sides of the tread's outer faces, {least:.3} m");
+            let cause = "a mesh too coarse to resolve the spread; raise `tool.n_elements`, or 0";
+            check.require(path, spread, spread == 0.0 || spread >= least, &expected, cause);
         }
     }
     let rubber = Materials::of(scenario).elastic(&tire.material);
