@@ -1,7 +1,7 @@
 //! One block of contacts on its way through a pass: filter, gather, contact law, ordered scatter.
 
 #[cfg(target_arch = "x86_64")]
-use crate::force_pass::in_quads;
+use crate::force_pass::{InstructionSet, in_quads};
 use crate::force_pass::{PassInput, Waiting};
 #[cfg(target_arch = "x86_64")]
 use crate::quads;
@@ -121,6 +121,13 @@ fn has_quads<P: Precision>() -> bool {
     return in_quads!(P, Quads => size_of::<Quads>()).is_some();
     #[cfg(not(target_arch = "x86_64"))]
     false
+}
+
+/// Eight contacts can be gathered at once.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn has_eights<P: Precision>(set: InstructionSet) -> bool {
+    is_same::<P, grouser_contact::F64>() && set == InstructionSet::Avx512
 }
 
 impl<T: Real, L: ContactLaw<T>> Block<T, L> {
@@ -273,8 +280,16 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
                 let gather = if has_quaternions::<T, L>() { quads::gather::<Q, true> } else { quads::gather::<Q, false> };
                 let (spheres, orientations) = (input.grains.spheres().cast(), input.grains.all_orientations());
                 // SAFETY: as in `look`; a block has room for all places, which are places of pairs; a block of quaternions is
-                // four arrays of lanes.
-                unsafe { gather(&slab.pairs, places, spheres, orientations, &lanes) };
+                // four arrays of lanes; with eights this pass is compiled for AVX-512F and `Q` is `F64`.
+                unsafe {
+                    if has_eights::<Q>(input.set) {
+                        let gather = if has_quaternions::<T, L>() { quads::gather_eight::<true> } else { quads::gather_eight::<false> };
+                        let lanes = &*(&raw const lanes).cast();
+                        gather(&slab.pairs, places, input.grains.spheres().cast(), orientations, lanes);
+                    } else {
+                        gather(&slab.pairs, places, spheres, orientations, &lanes);
+                    }
+                }
             });
             is_done = gathered.is_some();
         }

@@ -6,6 +6,7 @@
 //! closure stands between a loop and its instructions: either would leave a call for every four contacts.
 
 mod advance;
+mod eight;
 mod four;
 mod memory;
 mod octet;
@@ -13,6 +14,7 @@ mod quad;
 mod turn;
 
 pub(crate) use advance::advance;
+pub(crate) use eight::gather_eight;
 pub(crate) use memory::{recall, remember};
 
 use crate::force_pass::Waiting;
