@@ -10,7 +10,7 @@ mod study;
 mod tire;
 mod tool_room;
 
-use super::{Motion, Outputs, Scenario, Soil, Tool};
+use super::{Motion, Outputs, Rotation, Scenario, Soil, Tool};
 use crate::diagnostic::Diagnostic;
 
 /// A value that cannot be, with its path in the scenario.
@@ -156,6 +156,14 @@ fn materials(check: &mut Check, scenario: &Scenario) {
         check.restitution(&format!("pairs[{i}].restitution"), pair.restitution);
         check.friction(&format!("pairs[{i}].friction"), pair.friction);
     }
+    if let Rotation::Tilting(_) = scenario.dials.rotation {
+        for (name, material) in &scenario.materials {
+            check.friction_of_tilting(&format!("materials.{name}.friction"), material.friction);
+        }
+        for (i, pair) in scenario.pairs.iter().enumerate() {
+            check.friction_of_tilting(&format!("pairs[{i}].friction"), pair.friction);
+        }
+    }
 }
 
 fn references(check: &mut Check, scenario: &Scenario) {
@@ -266,6 +274,17 @@ impl Check {
             value,
             value >= 0.0 && value.is_finite(),
             "zero or positive: tan of the angle",
+            "an angle in degrees: 30° is 0.577",
+        );
+    }
+
+    /// The law of tilting grains has been tested up to a friction angle of 60°.
+    fn friction_of_tilting(&mut self, path: &str, value: f64) {
+        self.require(
+            path,
+            value,
+            value.atan().to_degrees() <= 60.0 + 1e-9,
+            "at most 1.732, an angle of 60°, where grains tilt: beyond, their arms are loaded mainly sideways and no soil is known",
             "an angle in degrees: 30° is 0.577",
         );
     }

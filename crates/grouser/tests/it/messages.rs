@@ -63,6 +63,38 @@ fn wrong_scenarios_are_refused_with_line_column_expectation_and_cause() {
 }
 
 #[test]
+fn tilting_grains_rougher_than_sixty_degrees_and_thinner_than_a_twentieth_are_refused_where_spheres_are_not()
+{
+    let check = |friction: &str, rotation: &str| {
+        let home = tempfile::tempdir().unwrap();
+        let scene = CUP.replacen("friction: 0.5", &format!("friction: {friction}"), 1).replacen(
+            "outputs:",
+            &format!("dials: (rotation: {rotation}), outputs:"),
+            1,
+        );
+        fs::write(home.path().join("cup.ron"), scene).unwrap();
+        let output = grouser(home.path(), &["check", &home.path().join("cup.ron").display().to_string()]);
+        (output.status.code(), errors(&output))
+    };
+    for (friction, rotation) in [
+        ("1.732", "Tilting(shape: Cube)"),
+        ("0", "Tilting(shape: Angular(aspect_ratio: 0.05))"),
+        ("1.9", "Free"),
+    ] {
+        let (status, message) = check(friction, rotation);
+        assert_eq!(status, Some(0), "{friction} {rotation}: {message}");
+    }
+    for (friction, rotation, what) in [
+        ("1.74", "Tilting(shape: Cube)", "`materials.sand.friction` is 1.74"),
+        ("0.5", "Tilting(shape: Angular(aspect_ratio: 0.04))", "aspect ratio: 0.04 is not possible"),
+    ] {
+        let (status, message) = check(friction, rotation);
+        assert_eq!(status, Some(2), "{friction} {rotation}: {message}");
+        assert!(message.contains(what), "{message}");
+    }
+}
+
+#[test]
 fn a_missing_file_and_a_wrong_override_are_refused() {
     let home = tempfile::tempdir().unwrap();
     let absent = grouser(home.path(), &["check", "nowhere.ron"]);
