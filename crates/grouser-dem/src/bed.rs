@@ -148,7 +148,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         let motion = self.motion(time_step, Stages::None);
         let mut pace = Pace::STILL;
         for range in self.moving() {
-            pace = pace.and(motion.predict_all(&mut self.grains, range));
+            pace = pace.and(motion.predict_all(&mut self.grains, range, self.set));
         }
         self.look_after(pace, time_step)
     }
@@ -162,7 +162,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
     pub fn correct(&mut self, time_step: f64) {
         let motion = self.motion(time_step, Stages::None);
         for range in self.moving() {
-            motion.correct_all(&mut self.grains, range);
+            motion.correct_all(&mut self.grains, range, self.set);
         }
     }
 

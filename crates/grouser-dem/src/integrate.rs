@@ -13,7 +13,7 @@ use crate::grains::{Grains, Rotation};
 use crate::quads;
 use crate::shared_grains::SharedGrains;
 use grouser_contact::{Load, ParameterError, Precision, Real, Sphere, Vector};
-use grouser_geometry::Vec3;
+use grouser_geometry::{Orientation, Vec3};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -90,6 +90,26 @@ pub(crate) enum Stages {
 
 pub(crate) use crate::turning::Turning;
 
+/// Grains that are moved, and what moves them.
+struct Moved<'a, P: Precision> {
+    spheres: &'a mut [Sphere<P>],
+    loads: &'a mut [Load<P::Real>],
+    accelerations: &'a mut [[Vector<P::Real>; 2]],
+    orientations: Option<&'a mut [Orientation]>,
+}
+
+impl<'a, P: Precision> Moved<'a, P> {
+    fn of(grains: &'a mut Grains<P>, range: Range<usize>) -> Self {
+        let Grains { spheres, loads, accelerations, orientations, .. } = grains;
+        Self {
+            spheres: &mut spheres[range.clone()],
+            loads: &mut loads[range.clone()],
+            accelerations: &mut accelerations[range.clone()],
+            orientations: orientations.as_mut().map(|all| &mut all[range]),
+        }
+    }
+}
+
 /// The motion of grains between two force passes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion<T> {
@@ -142,95 +162,111 @@ impl<T: Real> Motion<T> {
         if self.stages == Stages::None {
             return Pace::STILL;
         }
-        let mut orientations = grains.orientations(range.clone());
+        let orientations = grains.orientations(range.clone());
         let (spheres, loads, accelerations) = grains.range(range);
-        let mut watch = Watch::default();
-        #[cfg(target_arch = "x86_64")]
-        let is_held = self.rotation == Rotation::Fixed;
-        let is_about_axis = self.turning.axis().is_some() && !is_held;
-        let has_loops = is_held || is_about_axis || self.turning.is_spherical();
-        if set != InstructionSet::Baseline && self.is_verlet() && has_loops {
-            let advanced = in_quads!(P, Q => {
-                let advance = match (orientations.is_some(), is_held, is_about_axis) {
-                    (false, false, _) => quads::advance::<Q, false, false, false>,
-                    (false, true, _) => quads::advance::<Q, false, true, false>,
-                    (true, true, _) => quads::advance::<Q, true, true, false>,
-                    (true, false, false) => quads::advance::<Q, true, false, false>,
-                    (true, false, true) => quads::advance::<Q, true, false, true>,
-                };
-                // SAFETY: `Q` is `P`, so that these are the same types; `detect` found AVX2 on this machine.
-                unsafe {
-                    advance(
-                        &*(&raw const *self).cast(),
-                        &mut *(&raw mut *spheres as *mut [Sphere<Q>]),
-                        &mut *(&raw mut *loads as *mut [Load<<Q as Precision>::Real>]),
-                        &mut *(&raw mut *accelerations as *mut [[Vector<<Q as Precision>::Real>; 2]]),
-                        orientations.as_deref_mut().unwrap_or_default(),
-                        &mut *(&raw mut watch).cast(),
-                    );
-                }
-            });
-            if advanced.is_some() {
-                return watch.pace();
-            }
-        }
-        if let Some(orientations) = orientations {
-            for (index, orientation) in orientations.iter_mut().enumerate() {
-                let (sphere, load, acceleration) =
-                    (&mut spheres[index], &mut loads[index], &mut accelerations[index]);
-                self.correct_turned(sphere, load, acceleration, orientation);
-                self.predict_turned(sphere, load, acceleration, orientation, &mut watch);
-            }
-            return watch.pace();
-        }
-        for ((sphere, load), acceleration) in spheres.iter_mut().zip(loads).zip(accelerations) {
-            self.correct(sphere, load, acceleration);
-            self.predict(sphere, load, acceleration, &mut watch);
-        }
-        watch.pace()
+        self.go_through::<P, true, true>(Moved { spheres, loads, accelerations, orientations }, set)
     }
 
     /// Corrects the grains of a range.
-    pub fn correct_all<P: Precision<Real = T>>(&self, grains: &mut Grains<P>, range: Range<usize>) {
-        let Grains { spheres, loads, accelerations, orientations, .. } = grains;
-        let orientations = orientations.as_mut().map(|all| &mut all[range.clone()]);
-        let (spheres, loads) = (&mut spheres[range.clone()], &loads[range.clone()]);
-        let accelerations = &mut accelerations[range];
-        if let Some(orientations) = orientations {
-            for (index, orientation) in orientations.iter_mut().enumerate() {
-                self.correct_turned(
-                    &mut spheres[index],
-                    &loads[index],
-                    &mut accelerations[index],
-                    orientation,
-                );
-            }
-            return;
-        }
-        for ((sphere, load), acceleration) in spheres.iter_mut().zip(loads).zip(accelerations) {
-            self.correct(sphere, load, acceleration);
-        }
+    pub fn correct_all<P: Precision<Real = T>>(
+        &self,
+        grains: &mut Grains<P>,
+        range: Range<usize>,
+        set: InstructionSet,
+    ) {
+        self.go_through::<P, true, false>(Moved::of(grains, range), set);
     }
 
     /// Predicts the grains of a range and clears their loads.
-    pub fn predict_all<P: Precision<Real = T>>(&self, grains: &mut Grains<P>, range: Range<usize>) -> Pace {
-        let Grains { spheres, loads, accelerations, orientations, .. } = grains;
-        let orientations = orientations.as_mut().map(|all| &mut all[range.clone()]);
-        let (spheres, loads) = (&mut spheres[range.clone()], &mut loads[range.clone()]);
-        let accelerations = &mut accelerations[range];
-        let mut watch = Watch::default();
-        if let Some(orientations) = orientations {
-            for (index, orientation) in orientations.iter_mut().enumerate() {
-                let (sphere, load, acceleration) =
-                    (&mut spheres[index], &mut loads[index], &mut accelerations[index]);
-                self.predict_turned(sphere, load, acceleration, orientation, &mut watch);
-            }
-            return watch.pace();
+    pub fn predict_all<P: Precision<Real = T>>(
+        &self,
+        grains: &mut Grains<P>,
+        range: Range<usize>,
+        set: InstructionSet,
+    ) -> Pace {
+        self.go_through::<P, false, true>(Moved::of(grains, range), set)
+    }
+
+    /// Corrects the grains where asked for, then predicts them where asked for.
+    fn go_through<P: Precision<Real = T>, const CORRECTS: bool, const PREDICTS: bool>(
+        &self,
+        mut moved: Moved<P>,
+        set: InstructionSet,
+    ) -> Pace {
+        if let Some(pace) = self.in_registers::<P, CORRECTS, PREDICTS>(&mut moved, set) {
+            return pace;
         }
+        let mut watch = Watch::default();
+        let Moved { spheres, loads, accelerations, orientations } = moved;
+        let mut orientations = orientations.map(|all| all.iter_mut());
         for ((sphere, load), acceleration) in spheres.iter_mut().zip(loads).zip(accelerations) {
-            self.predict(sphere, load, acceleration, &mut watch);
+            let orientation = orientations.as_mut().and_then(Iterator::next);
+            match orientation {
+                Some(orientation) => {
+                    if CORRECTS {
+                        self.correct_turned(sphere, load, acceleration, orientation);
+                    }
+                    if PREDICTS {
+                        self.predict_turned(sphere, load, acceleration, orientation, &mut watch);
+                    }
+                }
+                None => {
+                    if CORRECTS {
+                        self.correct(sphere, load, acceleration);
+                    }
+                    if PREDICTS {
+                        self.predict(sphere, load, acceleration, &mut watch);
+                    }
+                }
+            }
         }
         watch.pace()
+    }
+
+    /// The same by vector instructions; `None` where none are written for it.
+    #[cfg(target_arch = "x86_64")]
+    fn in_registers<P: Precision<Real = T>, const CORRECTS: bool, const PREDICTS: bool>(
+        &self,
+        Moved { spheres, loads, accelerations, orientations }: &mut Moved<P>,
+        set: InstructionSet,
+    ) -> Option<Pace> {
+        let is_held = self.rotation == Rotation::Fixed;
+        let is_about_axis = self.turning.axis().is_some() && !is_held;
+        let has_loops = is_held || self.turning.is_spherical() || is_about_axis && CORRECTS && PREDICTS;
+        if set == InstructionSet::Baseline || !self.is_verlet() || !has_loops {
+            return None;
+        }
+        let mut watch = Watch::<T>::default();
+        in_quads!(P, Q => {
+            let advance = match (orientations.is_some(), is_held, is_about_axis) {
+                (false, false, _) => quads::advance::<Q, CORRECTS, PREDICTS, false, false, false>,
+                (false, true, _) => quads::advance::<Q, CORRECTS, PREDICTS, false, true, false>,
+                (true, true, _) => quads::advance::<Q, CORRECTS, PREDICTS, true, true, false>,
+                (true, false, false) => quads::advance::<Q, CORRECTS, PREDICTS, true, false, false>,
+                (true, false, true) => quads::advance::<Q, CORRECTS, PREDICTS, true, false, true>,
+            };
+            // SAFETY: `Q` is `P`, so that these are the same types; `detect` found AVX2 on this machine.
+            unsafe {
+                advance(
+                    &*(&raw const *self).cast(),
+                    &mut *(&raw mut **spheres as *mut [Sphere<Q>]),
+                    &mut *(&raw mut **loads as *mut [Load<<Q as Precision>::Real>]),
+                    &mut *(&raw mut **accelerations as *mut [[Vector<<Q as Precision>::Real>; 2]]),
+                    orientations.as_deref_mut().unwrap_or_default(),
+                    &mut *(&raw mut watch).cast(),
+                );
+            }
+        })
+        .map(|()| watch.pace())
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    fn in_registers<P: Precision<Real = T>, const CORRECTS: bool, const PREDICTS: bool>(
+        &self,
+        _: &mut Moved<P>,
+        _: InstructionSet,
+    ) -> Option<Pace> {
+        None
     }
 
     #[inline(always)]

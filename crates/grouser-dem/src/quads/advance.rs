@@ -8,9 +8,9 @@ use crate::integrate::{Motion, Watch};
 use grouser_contact::{Load, Real, Sphere, Vector};
 use grouser_geometry::Orientation;
 
-/// Corrects and predicts every grain, as `Motion` does with Verlet's scheme one number at a time: `correct` and `predict`, or
+/// Corrects (`CORRECTS`) and predicts (`PREDICTS`) every grain, as `Motion` does with Verlet's scheme one number at a time: `correct` and `predict`, or
 /// `correct_turned` and `predict_turned` where grains have orientations (`HAS_ORIENTATIONS`). `IS_HELD` are grains that never turn;
-/// `IS_ABOUT_AXIS` grains that do, with the inertia of a body of rotation and no sphere.
+/// `IS_ABOUT_AXIS` grains that do, with the inertia of a body of rotation and no sphere, which go through both stages.
 ///
 /// # Safety
 /// The machine has AVX2; with orientations there is one for each grain; the inertia is spherical but where `IS_HELD` or
@@ -18,6 +18,8 @@ use grouser_geometry::Orientation;
 #[target_feature(enable = "avx2")]
 pub(crate) unsafe fn advance<
     Q: Quads,
+    const CORRECTS: bool,
+    const PREDICTS: bool,
     const HAS_ORIENTATIONS: bool,
     const IS_HELD: bool,
     const IS_ABOUT_AXIS: bool,
@@ -29,6 +31,7 @@ pub(crate) unsafe fn advance<
     orientations: &mut [Orientation],
     watch: &mut Watch<Q::Real>,
 ) {
+    assert!(CORRECTS && PREDICTS || !IS_ABOUT_AXIS);
     assert!(spheres.len() == loads.len() && spheres.len() == accelerations.len());
     assert!(!HAS_ORIENTATIONS || spheres.len() == orientations.len());
     let inverse_ratio = Q::Real::from_f64(if IS_ABOUT_AXIS { 1.0 } else { motion.turning.inverse_ratio() });
@@ -56,27 +59,36 @@ pub(crate) unsafe fn advance<
             let load: *mut Q::Real = loads.as_mut_ptr().add(index).cast();
             let acceleration: *mut Q::Real = accelerations.as_mut_ptr().add(index).cast();
 
-            // One division serves 1/m and 1/J.
-            let mobility = if HAS_ORIENTATIONS {
-                let radius = scalar((*sphere).radius.to_f64());
-                let inverse = Q::Real::ONE / ((*sphere).mass * radius * radius);
-                Q::Both::of_halves(inverse * radius * radius, inverse * inverse_ratio)
-            } else {
-                let inertia_per_mass = (*sphere).inertia_per_mass();
-                let inverse = Q::Real::ONE / ((*sphere).mass * inertia_per_mass);
-                Q::Both::of_halves(inverse * inertia_per_mass, inverse)
-            };
             let before = Q::Both::load_six(acceleration);
-            let mut after = Q::Both::load(load).times(mobility).plus(gravity);
-            if IS_HELD {
-                after = after.turning_as(before);
-            }
-            after.store_six(acceleration);
-            nothing.store(load);
-
             let old = Q::Both::load(velocity);
-            let change = after.minus(before);
-            let now = old.plus(change.times(half_steps));
+            let (mut after, mut change, mut now) = (before, nothing, old);
+            if CORRECTS {
+                // One division serves 1/m and 1/J.
+                let mobility = if HAS_ORIENTATIONS {
+                    let radius = scalar((*sphere).radius.to_f64());
+                    let inverse = Q::Real::ONE / ((*sphere).mass * radius * radius);
+                    Q::Both::of_halves(inverse * radius * radius, inverse * inverse_ratio)
+                } else {
+                    let inertia_per_mass = (*sphere).inertia_per_mass();
+                    let inverse = Q::Real::ONE / ((*sphere).mass * inertia_per_mass);
+                    Q::Both::of_halves(inverse * inertia_per_mass, inverse)
+                };
+                after = Q::Both::load(load).times(mobility).plus(gravity);
+                if IS_HELD {
+                    after = after.turning_as(before);
+                }
+                after.store_six(acceleration);
+                change = after.minus(before);
+                now = old.plus(change.times(half_steps));
+            }
+            if !PREDICTS {
+                if IS_HELD {
+                    now = now.turning_as(old);
+                }
+                now.with_lasts_of(old).store(velocity);
+                continue;
+            }
+            nothing.store(load);
             let middle = now.plus(after.times(half_steps));
             let travel = middle.translation().times(step);
             let place = Q::Wide::load(position);
