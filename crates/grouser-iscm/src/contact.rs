@@ -8,6 +8,7 @@ use nalgebra::{Matrix3, Matrix6};
 use crate::batch::{Batch, LANES};
 use crate::footing::{Facet, Footing, Site};
 use crate::imprint::{Imprint, MOST_SAG};
+use crate::levels::Pressed;
 use crate::polygon::{Answer, Corners, PartialLoad, SubTriangles, integrate};
 use crate::response::{OneArray, Reloaded, Response, Stiff, ThreeArrays};
 use crate::terrain::{Terrain, Unloading};
@@ -79,8 +80,8 @@ pub struct FootImprint {
     pub reference: Vec3,
     /// Slack tracks: their shoes give way to the ground.
     pub tracks: Vec<DrawnTrack>,
-    /// What of each imprint can press.
-    footings: Vec<Footing>,
+    /// What of each imprint can press, by level of the ground.
+    pub(crate) footings: Vec<Footing>,
 }
 
 /// Present state of a point under one imprint.
@@ -97,11 +98,15 @@ struct Node {
 }
 
 impl FootImprint {
-    /// Running gear drawn as `layers` over a terrain of `n_grid` nodes along x, the lowest first and wheels last.
-    pub(crate) fn new(layers: Vec<Imprint>, reference: Vec3, n_grid: usize, partial: PartialLoad) -> Self {
-        let n = layers.len();
-        let footing = |k: usize| Footing::new(&layers[..=k], n_grid, partial, k + 1 == n);
-        Self { footings: (0..n).map(footing).collect(), layers, reference, tracks: Vec::new() }
+    /// Running gear drawn as `layers`, the lowest first and wheels last, over the present ground of a terrain.
+    pub(crate) fn new(
+        layers: Vec<Imprint>,
+        reference: Vec3,
+        terrain: &Terrain,
+        partial: PartialLoad,
+    ) -> Self {
+        let footings = Footing::of(&layers, terrain, partial);
+        Self { layers, reference, tracks: Vec::new(), footings }
     }
 
     /// Force of the `terrain` on the gear after it moved by `motion` since the imprints were drawn.
@@ -116,25 +121,36 @@ impl FootImprint {
     ) -> FootLoad {
         let followed = self.followed(terrain, motion);
         let mut load = FootLoad { wrench: Wrench::default(), stiffness: followed.stiffness, deepest: 0.0 };
-        for layer in 0..self.layers.len() {
-            let nodes = self.nodes(layer, terrain, motion, &followed, integration.partial);
-            load.deepest = self.deepest(layer, terrain, &nodes).max(load.deepest);
-            self.load_layer(layer, &nodes, terrain, integration, &mut load, &mut listen);
+        for footing in &self.footings {
+            let nodes = self.nodes(footing, terrain, motion, &followed, integration.partial);
+            load.deepest = self.deepest(footing, terrain, &nodes).max(load.deepest);
+            self.load_footing(footing, &nodes, terrain, integration, &mut load, &mut listen);
         }
         load.stiffness.fill_lower_triangle_with_upper_triangle();
         load
     }
 
-    /// Leaves the footprint: points inside the outline of the gear go down to its underside.
+    /// G2: leaves the footprint; each part of the gear presses the levels that it stands on down to its underside.
     pub fn stamp(&self, terrain: &mut Terrain, motion: &Pose) {
         let followed = self.followed(terrain, motion);
-        for layer in 0..self.layers.len() {
-            let nodes = self.nodes(layer, terrain, motion, &followed, PartialLoad::Proportional);
-            for (site, node) in self.footings[layer].sites.iter().zip(nodes) {
-                if site.is_inside && node.depth > 0.0 {
-                    terrain.stamp(site.on_grid, node.height);
+        let mut parts: Vec<(usize, Pressed)> = Vec::new();
+        let mut pressed_nodes: Vec<usize> = Vec::new();
+        for footing in &self.footings {
+            let nodes = self.nodes(footing, terrain, motion, &followed, PartialLoad::Proportional);
+            for (site, node) in footing.sites.iter().zip(nodes).filter(|(site, _)| site.share > 0.0) {
+                let pressed = Pressed { level: footing.level, share: site.share, height: node.height };
+                parts.push((site.on_grid, pressed));
+                if node.height < site.ground {
+                    pressed_nodes.push(site.on_grid);
                 }
             }
+        }
+        pressed_nodes.sort_unstable();
+        pressed_nodes.dedup();
+        parts.retain(|(node, _)| pressed_nodes.binary_search(node).is_ok());
+        parts.sort_by_key(|(node, _)| *node);
+        for cell in parts.chunk_by(|a, b| a.0 == b.0) {
+            terrain.press(cell[0].0, cell.iter().map(|(_, pressed)| *pressed));
         }
     }
 
@@ -145,22 +161,21 @@ impl FootImprint {
         followed
     }
 
-    /// F1, F2: sinkage, height and share of every point of a layer.
+    /// F1, F2: sinkage, height and share of every point of a footing.
     fn nodes(
         &self,
-        layer: usize,
+        footing: &Footing,
         terrain: &Terrain,
         motion: &Pose,
         followed: &Followed,
         partial: PartialLoad,
     ) -> Vec<Node> {
-        let footing = &self.footings[layer];
         let turn: Matrix3<f64> = motion.rotation.to_rotation_matrix().matrix() - Matrix3::identity();
         let shift = motion.translation.vector;
-        let has_shifts = !followed.shifts.is_empty() && layer + 1 < self.layers.len();
+        let has_shifts = !followed.shifts.is_empty() && footing.layer + 1 < self.layers.len();
         let original = terrain.grid().heights();
         let stand = |site: &Site| {
-            let (z_0, ground) = (original[site.on_grid], terrain.height(site.on_grid));
+            let (z_0, ground) = (original[site.on_grid], site.ground);
             let position = Vec3::from(site.position);
             let rise = |d: Vec3| d.z - site.slope[0] * d.x - site.slope[1] * d.y;
             let mut h = position.z + rise(turn * position + shift);
@@ -180,10 +195,6 @@ impl FootImprint {
             }
         };
         let mut nodes: Vec<Node> = footing.sites.iter().map(stand).collect();
-        let seen: Vec<(u32, f64)> = footing.depths_beside_prints(|site| nodes[site as usize].depth).collect();
-        for (site, depth) in seen {
-            nodes[site as usize].depth = depth;
-        }
         let seen: Vec<(u32, f64)> = footing.seen_depths(|site| nodes[site as usize].depth).collect();
         for (site, depth) in seen {
             nodes[site as usize].depth = depth;
@@ -191,29 +202,27 @@ impl FootImprint {
         nodes
     }
 
-    /// Deepest sinkage of soil under a layer \[m\].
-    fn deepest(&self, layer: usize, terrain: &Terrain, nodes: &[Node]) -> f64 {
-        let sag = MOST_SAG * self.layers[layer].spacing;
-        let sites = self.footings[layer].sites.iter().zip(nodes);
+    /// Deepest sinkage of soil under a footing \[m\].
+    fn deepest(&self, footing: &Footing, terrain: &Terrain, nodes: &[Node]) -> f64 {
+        let sag = MOST_SAG * self.layers[footing.layer].spacing;
+        let sites = footing.sites.iter().zip(nodes);
         let is_soil = |(site, node): &(&Site, &Node)| {
-            node.share > 0.0
-                && node.height < terrain.height(site.on_grid) + sag
-                && !terrain.is_fixed(site.on_grid)
+            node.share > 0.0 && node.height < site.ground + sag && !terrain.is_fixed(site.on_grid)
         };
         sites.filter(is_soil).fold(0.0, |deepest, (_, node)| node.z.max(deepest))
     }
 
-    /// F3 to F5: integrates over all polygons of a layer.
-    fn load_layer(
+    /// F3 to F5: integrates over all polygons of a footing.
+    fn load_footing(
         &self,
-        layer: usize,
+        footing: &Footing,
         nodes: &[Node],
         terrain: &Terrain,
         integration: &Integration,
         load: &mut FootLoad,
         listen: &mut impl FnMut(&LoadedPolygon),
     ) {
-        let footing = &self.footings[layer];
+        let layer = footing.layer;
         let ground = Ground::new(terrain);
         // Slack tracks have answered for theirs.
         let may_follow = layer + 1 < self.layers.len() && !self.tracks.is_empty();
@@ -302,10 +311,10 @@ impl<'a> Ground<'a> {
         let field = terrain.field();
         if field.is_per_node() {
             let pressures = on_grid.map(|node| field.of_node(node));
-            self.soil(ThreeArrays { pressures, per_resolution }, on_grid, corners, integration)
+            self.soil(ThreeArrays { pressures, per_resolution }, corners, integration)
         } else {
             let pressures = field.of_node(0);
-            self.soil(OneArray { pressures, per_resolution }, on_grid, corners, integration)
+            self.soil(OneArray { pressures, per_resolution }, corners, integration)
         }
     }
 
@@ -313,7 +322,6 @@ impl<'a> Ground<'a> {
     fn soil(
         &self,
         virgin: impl Response,
-        on_grid: &[usize; 3],
         corners: &Corners,
         Integration { sub_triangles, partial }: &Integration,
     ) -> Answer {
@@ -322,7 +330,7 @@ impl<'a> Ground<'a> {
                 integrate(sub_triangles, virgin, corners, *partial, contact_distance)
             }
             Unloading::Elastic { stiffness } => {
-                let residual = on_grid.map(|node| self.terrain.sinkage()[node]);
+                let residual = [0, 1, 2].map(|k| corners.z[k] - corners.depth[k]);
                 integrate(sub_triangles, Reloaded { virgin, stiffness, residual }, corners, *partial, 0.0)
             }
         }

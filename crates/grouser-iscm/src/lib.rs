@@ -40,6 +40,7 @@ pub mod equilibrium;
 mod footing;
 pub mod gear;
 pub mod imprint;
+mod levels;
 pub mod machine;
 pub mod mechanism;
 pub mod polygon;

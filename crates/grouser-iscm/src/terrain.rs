@@ -4,6 +4,7 @@ use grouser_geometry::HeightGrid;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::levels::{Level, Levels, Pressed};
 use crate::pressure::PressureField;
 
 /// How a point of ground behaves (P2 §2.2.1).
@@ -55,6 +56,7 @@ pub struct Terrain {
     sinkage: Vec<f64>,
     deepest: Vec<f64>,
     loadings: Vec<u32>,
+    levels: Vec<Levels>,
 }
 
 /// Why a terrain cannot be used.
@@ -113,6 +115,7 @@ impl Terrain {
             sinkage: vec![0.0; n],
             deepest: vec![0.0; n],
             loadings: vec![0; n],
+            levels: vec![Levels::default(); n],
         })
     }
 
@@ -174,13 +177,25 @@ impl Terrain {
         self.unloading
     }
 
-    /// Present height of a node \[m\].
+    /// Present height of the deepest ground in the cell of a node \[m\].
     #[inline(always)]
     pub fn height(&self, node: usize) -> f64 {
         self.grid.heights()[node] - self.sinkage[node]
     }
 
-    /// Sinkage of all nodes below the undisturbed ground \[m\].
+    /// Levels of the ground in the cell of a node.
+    #[inline(always)]
+    pub(crate) fn levels(&self, node: usize) -> &Levels {
+        &self.levels[node]
+    }
+
+    /// Present height of a level of the cell of a node \[m\].
+    #[inline(always)]
+    pub(crate) fn level_height(&self, node: usize, level: usize) -> f64 {
+        self.grid.heights()[node] - self.levels[node].get(level).sinkage
+    }
+
+    /// Sinkage of the deepest ground in the cell of each node below the undisturbed ground \[m\].
     pub fn sinkage(&self) -> &[f64] {
         &self.sinkage
     }
@@ -201,26 +216,48 @@ impl Terrain {
         self.kind[node] == GroundKind::Fixed
     }
 
-    /// Presses a node down to `height` \[m\] and lets it spring back where the ground is elastic.
+    /// Presses the whole cell of a node down to `height` \[m\] and lets it spring back where the ground is elastic.
     pub fn stamp(&mut self, node: usize, height: f64) {
-        if self.is_fixed(node) || height >= self.height(node) {
+        let levels = self.levels[node];
+        let whole = levels.overlaps(0.0, 1.0).into_iter().enumerate().filter(|(_, share)| *share > 0.0);
+        self.press(node, whole.map(|(level, share)| Pressed { level, share, height }));
+    }
+
+    /// Presses parts of the cell of a node down and lets them spring back where the ground is elastic.
+    pub(crate) fn press(&mut self, node: usize, parts: impl Iterator<Item = Pressed>) {
+        if self.is_fixed(node) {
             return;
         }
-        let sinkage = self.grid.heights()[node] - height;
-        self.deepest[node] = self.deepest[node].max(sinkage);
+        let z_0 = self.grid.heights()[node];
+        let pressed = |level: &Level, height: f64| {
+            let sinkage = z_0 - height;
+            (sinkage > level.sinkage).then(|| {
+                let deepest = level.deepest.max(sinkage);
+                Level { deepest, sinkage: self.left(node, level.sinkage, deepest, sinkage), ..*level }
+            })
+        };
+        let mut most = self.deepest[node];
+        let parts = parts.inspect(|part| most = most.max(z_0 - part.height));
+        let Some(after) = self.levels[node].after(parts, pressed) else { return };
+        self.levels[node] = after;
+        self.sinkage[node] = after.get(0).sinkage;
+        self.deepest[node] = most;
         self.loadings[node] += 1;
-        self.sinkage[node] = match self.unloading {
+    }
+
+    /// Sinkage that is left at a node after it was pressed down by `sinkage` \[m\].
+    fn left(&self, node: usize, before: f64, deepest: f64, sinkage: f64) -> f64 {
+        match self.unloading {
             // The ground follows the gear up again over the contact distance, so that a machine that stands still stays carried.
-            Unloading::Plastic { contact_distance } => self.sinkage[node].max(sinkage - contact_distance),
+            Unloading::Plastic { contact_distance } => before.max(sinkage - contact_distance),
             Unloading::Elastic { stiffness } => {
                 let resolution = self.field.resolution();
-                let deepest = self.deepest[node];
                 let (pressure, _) =
                     crate::pressure::interpolate(self.field.of_node(node), deepest / resolution);
                 // What was left before stays at least: reloading below the deepest point leaves no deeper rut.
-                self.sinkage[node].max(deepest - pressure / stiffness)
+                before.max(deepest - pressure / stiffness)
             }
-        };
+        }
     }
 }
 

@@ -19,8 +19,6 @@ pub(super) struct Settled {
     pub stops: Vec<usize>,
     /// Evaluations of the ground's forces.
     pub n_evaluations: usize,
-    /// Forces and stiffness at `q`.
-    pub balance: Balance,
 }
 
 /// E2: degrees of freedom in balance, those at a stop, and the evaluations spent.
@@ -56,6 +54,11 @@ pub(super) fn solve(
             })
             .collect();
         let d: Vec<f64> = (0..n).map(|k| target[k] - q[k]).collect();
+        // What is left after so short a step is a fraction of it.
+        if d.iter().all(|part| part.abs() <= tolerance) {
+            q.iter_mut().zip(&d).for_each(|(q, d)| *q += d);
+            break;
+        }
         let work = |b: &Balance| b.forces.iter().zip(&d).map(|(f, d)| f * d).sum::<f64>();
         let uphill = work(&here);
         let mut there = frozen.balance(machine, terrain, &target);
@@ -92,7 +95,7 @@ pub(super) fn solve(
             break;
         }
     }
-    Settled { q, stops, n_evaluations, balance: here }
+    Settled { q, stops, n_evaluations }
 }
 
 /// Share of the weight that the ground carries less than the machine weighs after a loose search.
@@ -131,8 +134,9 @@ pub(super) fn settle_and_lift(
     }
     // Not near enough: the careful search, then straight up.
     let settled = solve(frozen, machine, terrain, tolerance, 10);
-    let (mut q, mut here) = (settled.q, settled.balance);
-    n_evaluations += settled.n_evaluations;
+    let mut q = settled.q;
+    let mut here = frozen.balance(machine, terrain, &q);
+    n_evaluations += settled.n_evaluations + 1;
     for _ in 0..40 {
         if here.forces[0] < 0.0 {
             break;

@@ -166,11 +166,10 @@ impl Foot {
             wheel.draw(pose, travel, &mut wheels, owner as u16);
         }
         layers.push(wheels);
-        let axle = pose.rotation * Vec3::y();
         for layer in &mut layers {
-            layer.carry_edges(grid, &axle);
+            layer.carry_edges(grid);
         }
-        let mut drawn = FootImprint::new(layers, pose.translation.vector, grid.n_x(), partial);
+        let mut drawn = FootImprint::new(layers, pose.translation.vector, terrain, partial);
         for track in &mut tracks {
             track.find_touches(&drawn, terrain);
         }

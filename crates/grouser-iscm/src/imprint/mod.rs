@@ -41,14 +41,6 @@ const EMPTY: ImprintNode = ImprintNode {
     is_known: false,
 };
 
-/// A node at the edge of the gear, and which nodes' ground it is taken to see.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Edge {
-    pub node: usize,
-    /// Nodes around and the node itself, with weights that add up to one, zero for those that do not count.
-    pub seen: [(usize, f64); 9],
-}
-
 /// Grid model over a window of the terrain grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Imprint {
@@ -66,8 +58,6 @@ pub struct Imprint {
     origin: [f64; 2],
     ceiling: f64,
     partial: PartialLoad,
-    /// Nodes at the edge of the gear.
-    pub(crate) edges: Vec<Edge>,
 }
 
 impl Imprint {
@@ -82,18 +72,7 @@ impl Imprint {
         let (i_0, n_x) = window(min[0], max[0], grid.origin()[0], grid.n_x());
         let (j_0, n_y) = window(min[1], max[1], grid.origin()[1], grid.n_y());
         let origin = [grid.origin()[0] + d * i_0 as f64, grid.origin()[1] + d * j_0 as f64];
-        Self {
-            i_0,
-            j_0,
-            n_x,
-            n_y,
-            nodes: vec![EMPTY; n_x * n_y],
-            spacing: d,
-            origin,
-            ceiling,
-            partial,
-            edges: Vec::new(),
-        }
+        Self { i_0, j_0, n_x, n_y, nodes: vec![EMPTY; n_x * n_y], spacing: d, origin, ceiling, partial }
     }
 
     /// Whether the gear covers no node.
@@ -176,7 +155,7 @@ impl Imprint {
     ///
     /// The soil under a vertical edge lies at full depth up to the edge; without this it would rise within one cell. Points that are hardly
     /// covered lie in between, and neighbours count by what is covered of them, so that no height jumps as the edge passes a point.
-    pub fn carry_edges(&mut self, ground: &HeightGrid, axle: &Vec3) {
+    pub fn carry_edges(&mut self, ground: &HeightGrid) {
         if self.partial == PartialLoad::Step {
             return;
         }
@@ -228,7 +207,6 @@ impl Imprint {
         for (n, node) in carried {
             self.nodes[n] = node;
         }
-        self.find_edges(axle);
     }
 
     /// Which nodes have a neighbour that the gear covers, or are covered themselves.
@@ -243,66 +221,10 @@ impl Imprint {
         }
         is_near
     }
-
-    /// Where the gear's edge runs between points, those that footprints leave out stay as high as the ground beside the rut: a gear
-    /// that left them behind would still press there. They see the ground of their neighbours within the gear instead.
-    fn find_edges(&mut self, axle: &Vec3) {
-        let sideways = nalgebra::Vector2::new(axle.x, axle.y).normalize();
-        // Ruts have their walls beside the wheel.
-        let beside = AROUND.map(|(di, dj)| {
-            (di as f64 * sideways.x + dj as f64 * sideways.y).powi(2) / (di * di + dj * dj) as f64
-        });
-        let within = |i: usize, j: usize| {
-            if i < self.n_x && j < self.n_y { within(self.nodes[j * self.n_x + i].coverage) } else { 0.0 }
-        };
-        let mut edges = Vec::new();
-        for j in 0..self.n_y {
-            for i in 0..self.n_x {
-                let n = j * self.n_x + i;
-                let own = &self.nodes[n];
-                if !own.is_known || own.coverage >= 1.0 {
-                    continue;
-                }
-                let trusted = within(i, j);
-                // Those along the axes come first, then those across the corners, then the point itself.
-                let (mut left, mut sum) = (1.0, 0.0);
-                let mut edge = Edge { node: n, seen: [(n, 0.0); 9] };
-                for (k, (di, dj)) in AROUND.into_iter().enumerate() {
-                    let (a, b) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
-                    let weight = within(a, b) * beside[k];
-                    if k < 4 {
-                        left -= weight;
-                    }
-                    let weight =
-                        (1.0 - trusted) * weight * if k < 4 { 1.0 } else { ACROSS * f64::max(left, 0.0) };
-                    if weight > 0.0 {
-                        edge.seen[k] = (b * self.n_x + a, weight);
-                        sum += weight;
-                    }
-                }
-                if sum > 0.0 {
-                    edge.seen[8] = (n, trusted + BARELY * f64::max(left, 0.0));
-                    sum += edge.seen[8].1;
-                    edge.seen.iter_mut().for_each(|seen| seen.1 /= sum);
-                    edges.push(edge);
-                }
-            }
-        }
-        self.edges = edges;
-    }
 }
-
-/// How far the ground at a point counts as the ground under the gear: footprints take points within its outline, of whose cells it
-/// covers half or more. A ramp, so that nothing jumps as an edge passes a point.
-pub(crate) fn within(coverage: f64) -> f64 {
-    (50.0 * coverage - 24.0).clamp(0.0, 1.0)
-}
-
-/// Weight of a point's own ground beside a neighbour within the gear.
-pub(crate) const BARELY: f64 = 0.02;
 
 /// Share of a cell below which the height of the gear there is partly carried on from its neighbours.
-const HARDLY_COVERED: f64 = 0.25;
+pub(crate) const HARDLY_COVERED: f64 = 0.25;
 /// Weight of a neighbour across the corner, where one along the axes counts one.
 pub(crate) const ACROSS: f64 = 0.05;
 /// The neighbours of a point.

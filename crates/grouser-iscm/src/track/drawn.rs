@@ -5,14 +5,11 @@ use nalgebra::{Matrix6, Vector6};
 
 use super::{Chain, Lay, Touch, TrackShape};
 use crate::contact::FootImprint;
-use crate::footing::uncovered;
+use crate::footing::WITHIN_REACH;
 use crate::gear::{Belt, Wheel};
 use crate::mechanism::GRAVITY;
 use crate::pressure::interpolate;
 use crate::terrain::{Terrain, Unloading};
-
-/// Height of a shoe above the ground up to which the ground may come to press on it before the next drawing \[m\].
-const WITHIN_REACH: f64 = 0.12;
 
 /// A slack track on drawn imprints.
 #[derive(Clone, Debug)]
@@ -45,7 +42,9 @@ struct TouchedNode {
     /// Underside as drawn \[m\].
     position: Vec3,
     slope: [f64; 2],
-    /// Covered part of its cell \[m²\].
+    /// Height of the level of the ground that the shoe stands on \[m\].
+    ground: f64,
+    /// Part of its cell in which it does \[m²\].
     area: f64,
 }
 
@@ -138,42 +137,37 @@ impl DrawnTrack {
 
     /// T2: where the ground can press on the shoes, as they are drawn in `imprint`.
     pub fn find_touches(&mut self, imprint: &FootImprint, terrain: &Terrain) {
-        let n_grid = terrain.grid().n_x();
         let joints: Vec<Vec3> = self.lower.iter().map(|j| self.world(*j)).collect();
-        for (layer, drawn) in imprint.layers[..imprint.layers.len() - 1].iter().enumerate() {
-            for j in 0..drawn.n_y {
-                for i in 0..drawn.n_x {
-                    let gear = &drawn.nodes[j * drawn.n_x + i];
-                    if gear.coverage == 0.0 || !self.owns(gear.owner) {
-                        continue;
-                    }
-                    let (i_g, j_g) = (drawn.i_0 + i, drawn.j_0 + j);
-                    let area =
-                        gear.coverage * uncovered(&imprint.layers[..layer], i_g, j_g) * drawn.spacing.powi(2);
-                    if area == 0.0 {
-                        continue;
-                    }
-                    let on_grid = j_g * n_grid + i_g;
-                    if gear.height > terrain.height(on_grid) + WITHIN_REACH {
-                        continue;
-                    }
-                    let [x, y] = drawn.position(i, j);
-                    let position = Vec3::new(x, y, gear.height);
-                    let normal = Vec3::new(-gear.slope[0], -gear.slope[1], 1.0);
-                    let arm = (position - imprint.reference).cross(&normal);
-                    let link = self.links[(gear.owner - self.owners.start) as usize];
-                    let share = link.map_or(0.0, |a| {
-                        let along = joints[a + 1] - joints[a];
-                        (position - joints[a]).dot(&along) / along.norm_squared()
-                    });
-                    self.touches.push(Touch {
-                        link,
-                        share,
-                        normal: [normal.dot(&self.axes[0]), normal.dot(&self.axes[1])],
-                        with_body: Vector6::new(normal.x, normal.y, normal.z, arm.x, arm.y, arm.z),
-                    });
-                    self.nodes.push(TouchedNode { on_grid, position, slope: gear.slope, area });
+        let n_layers = imprint.layers.len();
+        for footing in imprint.footings.iter().filter(|footing| footing.layer + 1 < n_layers) {
+            let cell = imprint.layers[footing.layer].spacing.powi(2);
+            for site in
+                footing.sites.iter().filter(|site| site.share > 0.0 && self.owners.contains(&site.owner))
+            {
+                if site.position[2] > site.ground + WITHIN_REACH {
+                    continue;
                 }
+                let position = Vec3::from(site.position);
+                let normal = Vec3::new(-site.slope[0], -site.slope[1], 1.0);
+                let arm = (position - imprint.reference).cross(&normal);
+                let link = self.links[(site.owner - self.owners.start) as usize];
+                let share = link.map_or(0.0, |a| {
+                    let along = joints[a + 1] - joints[a];
+                    (position - joints[a]).dot(&along) / along.norm_squared()
+                });
+                self.touches.push(Touch {
+                    link,
+                    share,
+                    normal: [normal.dot(&self.axes[0]), normal.dot(&self.axes[1])],
+                    with_body: Vector6::new(normal.x, normal.y, normal.z, arm.x, arm.y, arm.z),
+                });
+                self.nodes.push(TouchedNode {
+                    on_grid: site.on_grid,
+                    position,
+                    slope: site.slope,
+                    ground: site.ground,
+                    area: site.share * cell,
+                });
             }
         }
         self.at_rest = self.rest(terrain, &Pose::identity()).joints;
@@ -187,7 +181,7 @@ impl DrawnTrack {
             .map(|node| {
                 let d = motion.rotation * node.position + motion.translation.vector - node.position;
                 let height = node.position.z + d.z - node.slope[0] * d.x - node.slope[1] * d.y;
-                (node.on_grid, height, terrain.height(node.on_grid), node.area)
+                (node.on_grid, height, node.ground, node.area)
             })
             .collect();
         self.chain.settle(&self.lower, &self.at_rest, &self.touches, |n, rise| {
@@ -195,7 +189,7 @@ impl DrawnTrack {
             if height + rise >= ground {
                 return (0.0, 0.0);
             }
-            let (p, slope) = answer(terrain, on_grid, height + rise);
+            let (p, slope) = answer(terrain, on_grid, height + rise, ground);
             (p * area, slope * area)
         })
     }
@@ -236,9 +230,9 @@ pub(crate) fn belt_down(down: Vec3) -> [f64; 2] {
 }
 
 /// Pressure \[Pa\] of the ground at a node under gear whose underside lies at `height` \[m\], and its slope \[Pa/m\].
-fn answer(terrain: &Terrain, node: usize, height: f64) -> (f64, f64) {
+fn answer(terrain: &Terrain, node: usize, height: f64, ground: f64) -> (f64, f64) {
     let z = terrain.grid().heights()[node] - height;
-    let depth = terrain.height(node) - height;
+    let depth = ground - height;
     if depth <= 0.0 {
         return (0.0, 0.0);
     }
