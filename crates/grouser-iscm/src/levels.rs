@@ -79,6 +79,11 @@ impl Levels {
         &self.0[last]
     }
 
+    /// Mean sinkage by shares \[m\].
+    pub fn mean_sinkage(&self) -> f64 {
+        self.0.iter().map(|level| level.share * level.sinkage).sum()
+    }
+
     /// G1: how much of each level gear covers that takes the shares from `low` to `high` of the cell, lower gear first.
     #[inline(always)]
     pub fn overlaps(&self, low: f64, high: f64) -> [f64; MOST_LEVELS] {

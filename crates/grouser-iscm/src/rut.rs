@@ -20,7 +20,7 @@ pub fn rut_depths(terrain: &Terrain, from: [f64; 2], to: [f64; 2], width: f64, w
             let k = (along / window).floor();
             if across.abs() <= width / 2.0 && k >= 0.0 && (k as usize) < n {
                 let k = k as usize;
-                depths[k] = depths[k].max(terrain.sinkage()[j * grid.n_x() + i]);
+                depths[k] = depths[k].max(terrain.deepest_level(j * grid.n_x() + i));
             }
         }
     }

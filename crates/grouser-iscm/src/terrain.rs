@@ -177,7 +177,7 @@ impl Terrain {
         self.unloading
     }
 
-    /// Present height of the deepest ground in the cell of a node \[m\].
+    /// Present mean height of the cell of a node \[m\].
     #[inline(always)]
     pub fn height(&self, node: usize) -> f64 {
         self.grid.heights()[node] - self.sinkage[node]
@@ -195,9 +195,14 @@ impl Terrain {
         self.grid.heights()[node] - self.levels[node].get(level).sinkage
     }
 
-    /// Sinkage of the deepest ground in the cell of each node below the undisturbed ground \[m\].
+    /// Mean sinkage of the cell of each node below the undisturbed ground \[m\]: times the cell's area it is the volume of the rut.
     pub fn sinkage(&self) -> &[f64] {
         &self.sinkage
+    }
+
+    /// Sinkage of the deepest level in the cell of a node below the undisturbed ground \[m\]: the depth of a rut.
+    pub fn deepest_level(&self, node: usize) -> f64 {
+        self.levels[node].get(0).sinkage
     }
 
     /// Deepest sinkage that each node has seen under load \[m\].
@@ -240,7 +245,7 @@ impl Terrain {
         let parts = parts.inspect(|part| most = most.max(z_0 - part.height));
         let Some(after) = self.levels[node].after(parts, pressed) else { return };
         self.levels[node] = after;
-        self.sinkage[node] = after.get(0).sinkage;
+        self.sinkage[node] = after.mean_sinkage();
         self.deepest[node] = most;
         self.loadings[node] += 1;
     }
@@ -284,6 +289,27 @@ mod tests {
         assert!((elastic.sinkage()[12] - 0.03).abs() < 1e-12 && elastic.deepest()[12] == 0.04);
         elastic.stamp(12, -0.035);
         assert!((elastic.sinkage()[12] - 0.03).abs() < 1e-12 && elastic.deepest()[12] == 0.04);
+    }
+
+    #[test]
+    fn maps_hold_the_volume_of_all_levels_and_ruts_are_as_deep_as_the_deepest() {
+        let mut terrain = flat();
+        let node = 5 * 11 + 5;
+        let press = |terrain: &mut Terrain, parts: [(usize, f64, f64); 2]| {
+            let parts = parts.map(|(level, share, height)| Pressed { level, share, height });
+            terrain.press(node, parts.into_iter());
+        };
+        press(&mut terrain, [(0, 0.3, -0.10), (0, 0.5, -0.04)]);
+        // Half of what was left goes down as well, and the deepest level farther: of four levels two are joined.
+        press(&mut terrain, [(0, 0.3, -0.12), (2, 0.1, -0.06)]);
+        let left = 2.5e-4; // The contact distance.
+        let levels = [(0.3, 0.12), (0.5, 0.04), (0.1, 0.06)];
+        let volume = levels.iter().map(|(share, sinkage)| share * (sinkage - left)).sum::<f64>() * 0.1 * 0.1;
+        let map = terrain.sinkage().iter().sum::<f64>() * 0.1 * 0.1;
+        assert!((map - volume).abs() < 1e-12, "{map} and {volume} m³");
+        assert!((terrain.height(node) + volume / 0.01).abs() < 1e-12);
+        let rut = crate::rut::rut_depths(&terrain, [0.0, 0.5], [1.0, 0.5], 0.3, 1.0);
+        assert!((rut[0] - (0.12 - left)).abs() < 1e-12, "{rut:?}");
     }
 
     #[test]
