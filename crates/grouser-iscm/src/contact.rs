@@ -46,8 +46,6 @@ pub struct FootLoad {
     pub wrench: Wrench,
     /// −∂(force, moment)/∂(displacement, rotation) about the reference point \[N/m, N, N·m\].
     pub stiffness: Matrix6<f64>,
-    /// Deepest sinkage of soil under load \[m\].
-    pub deepest: f64,
 }
 
 /// A loaded polygon, as handed to a listener.
@@ -120,11 +118,10 @@ impl FootImprint {
         mut listen: impl FnMut(&LoadedPolygon),
     ) -> FootLoad {
         let followed = self.followed(terrain, motion);
-        let mut load = FootLoad { wrench: Wrench::default(), stiffness: followed.stiffness, deepest: 0.0 };
+        let mut load = FootLoad { wrench: Wrench::default(), stiffness: followed.stiffness };
         for footing in &self.footings {
-            let nodes = self.nodes(footing, terrain, motion, &followed, integration.partial);
-            load.deepest = self.deepest(footing, terrain, &nodes).max(load.deepest);
-            self.load_footing(footing, &nodes, terrain, integration, &mut load, &mut listen);
+            let (nodes, sunk) = self.nodes(footing, terrain, motion, &followed, integration.partial);
+            self.load_footing(footing, &nodes, sunk, terrain, integration, &mut load, &mut listen);
         }
         load.stiffness.fill_lower_triangle_with_upper_triangle();
         load
@@ -132,11 +129,16 @@ impl FootImprint {
 
     /// G2: leaves the footprint; each part of the gear presses the levels that it stands on down to its underside.
     pub fn stamp(&self, terrain: &mut Terrain, motion: &Pose) {
+        self.print(terrain, motion).leave(terrain);
+    }
+
+    /// The footprint: what it presses, as it stands on the ground on which it was drawn.
+    pub(crate) fn print(&self, terrain: &Terrain, motion: &Pose) -> Footprint {
         let followed = self.followed(terrain, motion);
         let mut parts: Vec<(usize, Pressed)> = Vec::new();
         let mut pressed_nodes: Vec<usize> = Vec::new();
         for footing in &self.footings {
-            let nodes = self.nodes(footing, terrain, motion, &followed, PartialLoad::Proportional);
+            let (nodes, _) = self.nodes(footing, terrain, motion, &followed, PartialLoad::Proportional);
             for (site, node) in footing.sites.iter().zip(nodes).filter(|(site, _)| site.share > 0.0) {
                 let pressed = Pressed { level: footing.level, share: site.share, height: node.height };
                 parts.push((site.on_grid, pressed));
@@ -149,9 +151,7 @@ impl FootImprint {
         pressed_nodes.dedup();
         parts.retain(|(node, _)| pressed_nodes.binary_search(node).is_ok());
         parts.sort_by_key(|(node, _)| *node);
-        for cell in parts.chunk_by(|a, b| a.0 == b.0) {
-            terrain.press(cell[0].0, cell.iter().map(|(_, pressed)| *pressed));
-        }
+        Footprint(parts)
     }
 
     /// Rest of the slack tracks after the body moved.
@@ -161,7 +161,7 @@ impl FootImprint {
         followed
     }
 
-    /// F1, F2: sinkage, height and share of every point of a footing.
+    /// F1, F2: sinkage, height and share of every point of a footing, and how far the gear has sunk since it was drawn, at most \[m\].
     fn nodes(
         &self,
         footing: &Footing,
@@ -169,11 +169,12 @@ impl FootImprint {
         motion: &Pose,
         followed: &Followed,
         partial: PartialLoad,
-    ) -> Vec<Node> {
+    ) -> (Vec<Node>, f64) {
         let turn: Matrix3<f64> = motion.rotation.to_rotation_matrix().matrix() - Matrix3::identity();
         let shift = motion.translation.vector;
         let has_shifts = !followed.shifts.is_empty() && footing.layer + 1 < self.layers.len();
         let original = terrain.grid().heights();
+        let mut sunk = 0.0_f64;
         let stand = |site: &Site| {
             let (z_0, ground) = (original[site.on_grid], site.ground);
             let position = Vec3::from(site.position);
@@ -182,6 +183,7 @@ impl FootImprint {
             if has_shifts && let Some(shift) = followed.shift(site.owner) {
                 h += rise(shift.at(position));
             }
+            sunk = sunk.max(position.z - h);
             match partial {
                 PartialLoad::Proportional => {
                     Node { z: z_0 - h, height: h, share: site.share, depth: ground - h }
@@ -199,17 +201,21 @@ impl FootImprint {
         for (site, depth) in seen {
             nodes[site as usize].depth = depth;
         }
-        nodes
+        (nodes, sunk)
     }
 
-    /// Deepest sinkage of soil under a footing \[m\].
-    fn deepest(&self, footing: &Footing, terrain: &Terrain, nodes: &[Node]) -> f64 {
-        let sag = MOST_SAG * self.layers[footing.layer].spacing;
-        let sites = footing.sites.iter().zip(nodes);
-        let is_soil = |(site, node): &(&Site, &Node)| {
-            node.share > 0.0 && node.height < site.ground + sag && !terrain.is_fixed(site.on_grid)
-        };
-        sites.filter(is_soil).fold(0.0, |deepest, (_, node)| node.z.max(deepest))
+    /// Deepest sinkage of soil under the gear where it was drawn \[m\].
+    pub(crate) fn deepest(&self, terrain: &Terrain, partial: PartialLoad) -> f64 {
+        let followed = self.followed(terrain, &Pose::identity());
+        self.footings.iter().fold(0.0, |deepest, footing| {
+            let (nodes, _) = self.nodes(footing, terrain, &Pose::identity(), &followed, partial);
+            let sag = MOST_SAG * self.layers[footing.layer].spacing;
+            let sites = footing.sites.iter().zip(&nodes);
+            let is_soil = |(site, node): &(&Site, &Node)| {
+                node.share > 0.0 && node.height < site.ground + sag && !terrain.is_fixed(site.on_grid)
+            };
+            sites.filter(is_soil).fold(deepest, |deepest, (_, node)| node.z.max(deepest))
+        })
     }
 
     /// F3 to F5: integrates over all polygons of a footing.
@@ -217,6 +223,7 @@ impl FootImprint {
         &self,
         footing: &Footing,
         nodes: &[Node],
+        sunk: f64,
         terrain: &Terrain,
         integration: &Integration,
         load: &mut FootLoad,
@@ -228,7 +235,7 @@ impl FootImprint {
         let may_follow = layer + 1 < self.layers.len() && !self.tracks.is_empty();
         let mut batch = Batch::new();
         let mut pressed: [Option<&Facet>; LANES] = [None; LANES];
-        for facet in &footing.facets {
+        for facet in footing.facets(&self.layers, integration.partial, sunk) {
             let [a, b, c] = facet.sites.map(|site| &nodes[site as usize]);
             let corners = Corners {
                 z: [a.z, b.z, c.z],
@@ -285,6 +292,18 @@ impl FootImprint {
             });
         }
         batch.clear();
+    }
+}
+
+/// Parts of gear and the nodes of the terrain that they press, in the order of the nodes.
+pub(crate) struct Footprint(Vec<(usize, Pressed)>);
+
+impl Footprint {
+    /// Presses.
+    pub fn leave(&self, terrain: &mut Terrain) {
+        for cell in self.0.chunk_by(|a, b| a.0 == b.0) {
+            terrain.press(cell[0].0, cell.iter().map(|(_, pressed)| *pressed));
+        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! What of an imprint can press on the ground: its points and triangles, found once a drawing.
 
-use crate::imprint::{ACROSS, AROUND, HARDLY_COVERED, Imprint};
+use std::sync::OnceLock;
+
+use crate::imprint::{ACROSS, AROUND, HARDLY_COVERED, Imprint, MOST_SAG};
 use crate::levels::MOST_LEVELS;
 use crate::polygon::{PartialLoad, Sag};
 use crate::terrain::Terrain;
@@ -33,6 +35,15 @@ pub(crate) struct Facet {
     pub owner: u16,
 }
 
+/// Where a triangle lies.
+#[derive(Clone, Copy, Debug)]
+struct Triangle {
+    /// Node of the window at the lower left of its cell, and whether it is the first or second of the two there.
+    cell: u32,
+    half: u32,
+    sites: [u32; 3],
+}
+
 /// A point hardly covered, of whose depth `own` counts, and the neighbours that give the rest: a range of `Footing::seen`.
 #[derive(Clone, Debug)]
 struct Edge {
@@ -50,8 +61,11 @@ pub(crate) struct Footing {
     pub level: usize,
     /// The points.
     pub sites: Vec<Site>,
-    /// The triangles of which a part is covered.
-    pub facets: Vec<Facet>,
+    /// The triangles that press once the gear has sunk by less than [`CLOSE`] since it was drawn.
+    close: Vec<Facet>,
+    /// All triangles of which a part is covered, made when the gear sinks farther.
+    all: OnceLock<Vec<Facet>>,
+    triangles: Vec<Triangle>,
     edges: Vec<Edge>,
     /// Points and their weights, which add up to one for each edge.
     seen: Vec<(u32, f64)>,
@@ -69,6 +83,8 @@ struct Part {
 }
 
 const NONE: u32 = u32::MAX;
+/// Sinkage since the drawing up to which only triangles close to the ground are looked at \[m\]; changes cost, not results.
+const CLOSE: f64 = 4e-3;
 /// Height above the ground up to which the gear may come to press on it before the next drawing \[m\].
 pub(crate) const WITHIN_REACH: f64 = 0.12;
 
@@ -100,8 +116,6 @@ impl Footing {
     }
 
     /// Of layer `k` of `layers` on one level, of which it covers `parts`.
-    ///
-    /// Wheels, the last layer of all, have a curved underside; shoes are flat.
     fn new(
         layers: &[Imprint],
         k: usize,
@@ -110,14 +124,14 @@ impl Footing {
         terrain: &Terrain,
         partial: PartialLoad,
     ) -> Self {
-        let (imprint, is_curved) = (&layers[k], k + 1 == layers.len());
+        let imprint = &layers[k];
         let n_x = imprint.n_x;
         let n_covered = parts.iter().filter(|part| part.is_near).count();
         let mut footing = Self {
             layer: k,
             level,
             sites: Vec::with_capacity(2 * n_covered),
-            facets: Vec::with_capacity(3 * n_covered),
+            triangles: Vec::with_capacity(3 * n_covered),
             ..Self::default()
         };
         let rows: Vec<bool> = parts.chunks(n_x).map(|row| row.iter().any(|part| part.is_near)).collect();
@@ -128,31 +142,63 @@ impl Footing {
                 if ![(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)].into_iter().any(is_near) {
                     continue;
                 }
-                // Diagonals alternate so that no direction is preferred.
-                let triangles = if (imprint.i_0 + i + imprint.j_0 + j) % 2 == 0 {
-                    [[(i, j), (i + 1, j), (i + 1, j + 1)], [(i, j), (i + 1, j + 1), (i, j + 1)]]
-                } else {
-                    [[(i, j), (i + 1, j), (i, j + 1)], [(i + 1, j), (i + 1, j + 1), (i, j + 1)]]
-                };
-                for corners in triangles.into_iter().filter(|corners| corners.iter().any(|&c| is_near(c))) {
-                    let sag = if is_curved && partial == PartialLoad::Proportional {
-                        Sag::new(imprint.sag(corners))
-                    } else {
-                        Sag::default()
-                    };
-                    let owner = owner(corners.map(|(a, b)| {
-                        let n = b * n_x + a;
-                        (imprint.nodes[n].owner, parts[n].share)
-                    }));
-                    let sites = corners.map(|at| footing.site(at, imprint, parts, terrain, &mut site_of));
-                    footing.facets.push(Facet { sites, sag, owner });
+                for half in 0..2 {
+                    let corners = corners(imprint, (i, j), half);
+                    if corners.iter().any(|&corner| is_near(corner)) {
+                        let sites = corners.map(|at| footing.site(at, imprint, parts, terrain, &mut site_of));
+                        footing.triangles.push(Triangle { cell: (j * n_x + i) as u32, half, sites });
+                    }
                 }
             }
         }
         if partial == PartialLoad::Proportional {
             footing.see_neighbours(imprint, parts, &site_of);
         }
+        footing.find_close(layers, partial);
         footing
+    }
+
+    /// Finds the triangles that press once the gear has sunk by [`CLOSE`].
+    fn find_close(&mut self, layers: &[Imprint], partial: PartialLoad) {
+        let mut depths: Vec<f64> = self.sites.iter().map(|site| site.ground - site.position[2]).collect();
+        let seen: Vec<(u32, f64)> = self.seen_depths(|site| depths[site as usize]).collect();
+        for (site, depth) in seen {
+            depths[site as usize] = depth;
+        }
+        // No underside sags more below the corners of a triangle.
+        let most = CLOSE + 4.0 / 3.0 * MOST_SAG * layers[self.layer].spacing;
+        let is_close =
+            |triangle: &&Triangle| triangle.sites.iter().any(|&site| depths[site as usize] > -most);
+        let close = self.triangles.iter().filter(is_close);
+        self.close = close.map(|triangle| self.facet(layers, partial, triangle)).collect();
+    }
+
+    /// The triangles that may press once the gear has sunk by `sunk` \[m\] since it was drawn in `layers`.
+    pub fn facets(&self, layers: &[Imprint], partial: PartialLoad, sunk: f64) -> &[Facet] {
+        if sunk < CLOSE - 1e-9 {
+            return &self.close;
+        }
+        self.all.get_or_init(|| {
+            self.triangles.iter().map(|triangle| self.facet(layers, partial, triangle)).collect()
+        })
+    }
+
+    /// Wheels, the last layer of all, have a curved underside; shoes are flat.
+    #[inline(always)]
+    fn facet(&self, layers: &[Imprint], partial: PartialLoad, triangle: &Triangle) -> Facet {
+        let Triangle { cell, half, sites } = *triangle;
+        let is_curved = self.layer + 1 == layers.len() && partial == PartialLoad::Proportional;
+        let sag = if is_curved {
+            let (imprint, cell) = (&layers[self.layer], cell as usize);
+            Sag::new(imprint.sag(corners(imprint, (cell % imprint.n_x, cell / imprint.n_x), half)))
+        } else {
+            Sag::default()
+        };
+        let owner = owner(sites.map(|site| {
+            let site = &self.sites[site as usize];
+            (site.owner, site.share)
+        }));
+        Facet { sites, sag, owner }
     }
 
     /// What is hardly covered takes its depth from its neighbours.
@@ -222,6 +268,18 @@ impl Footing {
             let seen = self.seen[edge.seen.clone()].iter().map(|&(site, weight)| weight * own(site));
             (edge.site, edge.own * own(edge.site) + seen.sum::<f64>())
         })
+    }
+}
+
+/// Corners of the first or second triangle in the cell of the window of `imprint` with node (`i`, `j`) at its lower left.
+#[inline(always)]
+fn corners(imprint: &Imprint, (i, j): (usize, usize), half: u32) -> [(usize, usize); 3] {
+    // Diagonals alternate so that no direction is preferred.
+    match ((imprint.i_0 + i + imprint.j_0 + j) % 2, half) {
+        (0, 0) => [(i, j), (i + 1, j), (i + 1, j + 1)],
+        (0, _) => [(i, j), (i + 1, j + 1), (i, j + 1)],
+        (_, 0) => [(i, j), (i + 1, j), (i, j + 1)],
+        _ => [(i + 1, j), (i + 1, j + 1), (i, j + 1)],
     }
 }
 
@@ -345,6 +403,33 @@ mod tests {
         for [plates, wheel, lifted] in errors {
             assert!(plates.abs() < 1e-4 && wheel.abs() < 2e-3 && lifted.abs() < 2e-4, "{errors:.5?}");
         }
+    }
+
+    #[test]
+    fn triangles_far_above_the_ground_answer_once_the_gear_sinks_onto_them() {
+        let law = PressureLaw::Linear(Linear { stiffness: 1e6 });
+        let partial = PartialLoad::Proportional;
+        let grid = HeightGrid::covering([-0.5, -0.5], [2.0, 1.0], 0.04, |_, _| 0.0).unwrap();
+        let array = PressureArray::new(&law, 0.005, 0.5).unwrap();
+        let terrain = Terrain::new(grid, PressureField::uniform(array)).unwrap();
+        let blank = || Imprint::new(terrain.grid(), [-0.2, -0.4], [1.3, 0.4], 1.0, partial);
+        let (mut low, mut high) = (blank(), blank());
+        // Wheels, 1 mm in the ground, and plates 2 cm above it.
+        let plate = |from: f64| Plate { along: [from, from + 0.4], across: [-0.3, 0.3], depth: 0.0 };
+        high.draw_plate(&Pose::translation(0.003, 0.0, -1e-3), &plate(0.0), 0);
+        low.draw_plate(&Pose::translation(0.003, 0.0, 0.02), &plate(0.6), 0);
+        low.carry_edges(terrain.grid());
+        high.carry_edges(terrain.grid());
+        let foot = FootImprint::new(vec![low, high], Vec3::zeros(), &terrain, partial);
+        let integration = Integration { sub_triangles: SubTriangles::new(4), partial };
+        for (sunk, both) in [(0.0, false), (3.9e-3, false), (4.1e-3, false), (0.03, true)] {
+            let motion = Pose::translation(0.0, 0.0, -sunk);
+            let lift = foot.load(&terrain, &motion, &integration, |_| ()).wrench.force.z;
+            let (wheels, plates) = (sunk + 1e-3, f64::max(sunk - 0.02, 0.0));
+            let exact = 1e6 * 0.4 * 0.6 * (wheels + plates);
+            assert!((lift / exact - 1.0).abs() < 1e-9 && both == (plates > 0.0), "{sunk}: {lift}, {exact} N");
+        }
+        assert!(foot.footings[0].close.is_empty() && !foot.footings[1].close.is_empty());
     }
 
     #[test]

@@ -135,6 +135,11 @@ impl RunState {
 
     /// Drives one run step.
     pub fn step(&mut self, machine: &Machine, settings: &RunSettings) -> Result<StepResult, RunError> {
+        // Within the pool of threads: work for all feet begins without a change of threads.
+        rayon::scope(|_| self.step_here(machine, settings))
+    }
+
+    fn step_here(&mut self, machine: &Machine, settings: &RunSettings) -> Result<StepResult, RunError> {
         let before = self.distance(settings);
         let n = settings.intermediate_steps + 1;
         let mut n_evaluations = 0;
@@ -175,9 +180,7 @@ impl RunState {
         let frozen = Frozen::new(machine, &self.terrain, &at, distance, settings.search.integration())
             .map_err(failed)?;
         let (lifted, n_evaluations) = frozen.settle_and_lift(machine, &self.terrain, 1e-4);
-        for (foot, imprint) in frozen.imprints.iter().enumerate() {
-            imprint.stamp(&mut self.terrain, &frozen.motion_of(foot, machine, &lifted));
-        }
+        frozen.stamp(machine, &mut self.terrain, &lifted);
         self.configuration = lifted;
         Ok(n_evaluations)
     }

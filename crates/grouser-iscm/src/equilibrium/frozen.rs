@@ -116,10 +116,14 @@ impl Frozen {
         at.tracks = shapes.into_iter().flatten().collect();
     }
 
-    /// Motion of a foot's body from where its imprint was drawn to a configuration nearby.
-    pub fn motion_of(&self, foot: usize, machine: &Machine, to: &Configuration) -> Pose {
-        let body = machine.feet[foot].body;
-        motion(&self.poses[body], &machine.mechanism.poses(to)[body])
+    /// G2: leaves the footprints of all feet after the bodies moved to a configuration nearby, one foot after the other.
+    pub fn stamp(&self, machine: &Machine, terrain: &mut Terrain, to: &Configuration) {
+        let poses = machine.mechanism.poses(to);
+        let prints = on_all_feet(self.imprints.len(), |foot| {
+            let body = machine.feet[foot].body;
+            self.imprints[foot].print(terrain, &motion(&self.poses[body], &poses[body]))
+        });
+        prints.iter().for_each(|print| print.leave(terrain));
     }
 
     /// Names a sinkage beyond the data and forces that are not numbers.
@@ -129,8 +133,9 @@ impl Frozen {
             if !load.wrench.force.iter().all(|f| f.is_finite()) {
                 return Err(NoEquilibrium::NonFiniteForce { foot });
             }
-            if load.deepest > max_sinkage + 1e-9 {
-                return Err(NoEquilibrium::TooDeep { foot, sinkage: load.deepest, max_sinkage });
+            let sinkage = self.imprints[foot].deepest(terrain, self.integration.partial);
+            if sinkage > max_sinkage + 1e-9 {
+                return Err(NoEquilibrium::TooDeep { foot, sinkage, max_sinkage });
             }
         }
         Ok(())

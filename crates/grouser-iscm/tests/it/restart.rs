@@ -37,3 +37,23 @@ fn a_step_below_the_limit_and_a_route_off_the_terrain_are_refused() {
     let error = RunState::start(&machine, flat_ground(0.08, 9.0), &settings(4.4, 0.12)).unwrap_err();
     assert!(error.to_string().contains("off the terrain"), "{error}");
 }
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    let machine = component_vehicle(30_000.0, true, 0.05);
+    let settings = RunSettings {
+        route: Route { points: vec![[2.0, 0.0], [3.0, 0.0]] },
+        run_step: 0.12,
+        intermediate_steps: 4,
+        search: SearchSettings { position_tolerance: 1e-6, ..SearchSettings::default() },
+    };
+    let bytes = [1, 2, 3].map(|n_threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().unwrap();
+        pool.install(|| {
+            let mut state = RunState::start(&machine, flat_ground(0.08, 9.0), &settings).unwrap();
+            let step = state.step(&machine, &settings).unwrap();
+            postcard::to_stdvec(&(state, step)).unwrap()
+        })
+    });
+    assert!(bytes[0] == bytes[1] && bytes[0] == bytes[2]);
+}
