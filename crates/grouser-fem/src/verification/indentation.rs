@@ -57,7 +57,7 @@ fn force(n: usize, volumetric: VolumetricTreatment) -> Result<f64, VerificationE
     block.fix_components("second_min", [false, true, false])?;
     for far in ["first_max", "second_max", "third_min"] {
         for node in block.mesh().nodes_of(far)? {
-            let u = boussinesq(&block.mesh().nodes[node as usize]);
+            let u = boussinesq(&block.mesh().nodes[node as usize], FORCE, YOUNG_MODULUS, POISSON_RATIO);
             (0..3).for_each(|c| block.prescribe(node, c, u[c], 0.0));
         }
     }
@@ -104,16 +104,17 @@ fn reaction(block: &Solid, node: u32) -> f64 {
     place.map_or(0.0, |k| block.state.reaction[k].z)
 }
 
-/// Displacement [m] under a point force at the origin that points down (Boussinesq 1885; Johnson section 3.2).
-fn boussinesq(x: &Vec3) -> Vec3 {
-    let shear_modulus = YOUNG_MODULUS / (2.0 * (1.0 + POISSON_RATIO));
+/// Displacement [m] of `x` [m] in the half-space z < 0 under a point force [N] at the origin that points down; Young's modulus [Pa] and
+/// Poisson's ratio [-]. Boussinesq 1885; Johnson section 3.2.
+pub fn boussinesq(x: &Vec3, force: f64, young_modulus: f64, poisson_ratio: f64) -> Vec3 {
+    let shear_modulus = young_modulus / (2.0 * (1.0 + poisson_ratio));
     let (r, depth) = (x.x.hypot(x.y), -x.z);
     let distance = r.hypot(depth);
-    let scale = FORCE / (4.0 * PI * shear_modulus);
+    let scale = force / (4.0 * PI * shear_modulus);
     // Per unit of r.
     let radial =
-        scale * (depth / distance.powi(3) - (1.0 - 2.0 * POISSON_RATIO) / (distance * (distance + depth)));
-    let down = scale * (depth * depth / distance.powi(3) + 2.0 * (1.0 - POISSON_RATIO) / distance);
+        scale * (depth / distance.powi(3) - (1.0 - 2.0 * poisson_ratio) / (distance * (distance + depth)));
+    let down = scale * (depth * depth / distance.powi(3) + 2.0 * (1.0 - poisson_ratio) / distance);
     Vec3::new(radial * x.x, radial * x.y, -down)
 }
 

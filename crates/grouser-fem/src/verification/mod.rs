@@ -10,6 +10,8 @@ mod ring;
 mod stiffness;
 mod tube;
 
+pub use indentation::boussinesq;
+
 use grouser_geometry::{TetrahedralMesh, Vec3, box_mesh};
 use serde::Serialize;
 

@@ -4,17 +4,17 @@ use super::Row;
 use super::coupling::{LAW, RADIUS, bead};
 use grouser_contact::{Interaction, Load, Material as Grain, PairTable, Tail, Vector};
 use grouser_coupling::{DeformingContacts, Margin, Mirror, Spread, Step};
+use grouser_fem::verification::boussinesq;
 use grouser_fem::{LinearSolver, Material as Elastic, Settings, Solid, StaticOptions, VolumetricTreatment};
 use grouser_geometry::{Lattice, Vec3};
 use std::error::Error;
-use std::f64::consts::PI;
 
 /// Young's modulus [Pa] and Poisson's ratio of the block.
 const YOUNG: f64 = 1e7;
 const POISSON: f64 = 0.3;
 /// Contact radius that Hertz's theory gives to bead and block together [m].
 const CONTACT_RADIUS: f64 = 3e-4;
-/// Side of the block over the contact radius: upwards from the middle of its top.
+/// Distance of the block's far sides from the contact, over the contact radius.
 const EXTENT: f64 = 16.0;
 
 /// Radius over which forces are spread, over the contact radius: forces of the stiffest bead are just within [`Spread`]'s limit.
@@ -40,7 +40,7 @@ fn held(n: usize, young: f64, share: f64) -> Result<f64, Box<dyn Error>> {
     let mut solid = Solid::new(mesh, vec![Elastic::hooke(1000.0, YOUNG, POISSON)], settings)?;
     for far in ["first_min", "first_max", "second_min", "second_max", "third_min"] {
         for node in solid.mesh().nodes_of(far)? {
-            let u = boussinesq(&solid.mesh().nodes[node as usize], hertz);
+            let u = boussinesq(&solid.mesh().nodes[node as usize], hertz, YOUNG, POISSON);
             (0..3).for_each(|c| solid.prescribe(node, c, u[c], 0.0));
         }
     }
@@ -79,17 +79,6 @@ fn held(n: usize, young: f64, share: f64) -> Result<f64, Box<dyn Error>> {
         pressing -= missing / slope;
     }
     Ok(found / hertz)
-}
-
-/// Displacement [m] under `force` at the origin that points down (Boussinesq 1885; Johnson section 3.2).
-fn boussinesq(x: &Vec3, force: f64) -> Vec3 {
-    let shear_modulus = YOUNG / (2.0 * (1.0 + POISSON));
-    let (r, depth) = (x.x.hypot(x.y), -x.z);
-    let distance = r.hypot(depth);
-    let scale = force / (4.0 * PI * shear_modulus);
-    let radial = scale * (depth / distance.powi(3) - (1.0 - 2.0 * POISSON) / (distance * (distance + depth)));
-    let down = scale * (depth * depth / distance.powi(3) + 2.0 * (1.0 - POISSON) / distance);
-    Vec3::new(radial * x.x, radial * x.y, -down)
 }
 
 /// The force goes to Hertz's as the elements shrink, for a bead of the block's own stuff and for a hard one.
