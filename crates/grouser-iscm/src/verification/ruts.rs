@@ -1,5 +1,6 @@
 //! Rut depths of standing vehicles.
 
+use super::plane::bisect;
 use super::{Row, component_vehicle, flat_ground};
 use crate::equilibrium::{SearchSettings, Solver, equilibrium, start_position};
 use crate::mechanism::GRAVITY;
@@ -10,14 +11,6 @@ const CLOSED_FORM: &str = "closed form: circular segment in linear soil, exact v
 fn cylinder_force(radius: f64, width: f64, stiffness: f64, sinkage: f64) -> f64 {
     let (r, z) = (radius, sinkage.max(0.0));
     width * stiffness * (r * r * ((r - z) / r).acos() - (r - z) * (2.0 * r * z - z * z).sqrt())
-}
-
-fn bisect(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    for _ in 0..80 {
-        let middle = 0.5 * (low + high);
-        if f(middle) > 0.0 { high = middle } else { low = middle }
-    }
-    0.5 * (low + high)
 }
 
 fn sinkage(spacing: f64, mass: f64, has_tracks: bool, radius: f64) -> f64 {
