@@ -6,6 +6,9 @@ use super::Imprint;
 use crate::polygon::PartialLoad;
 
 /// Samples per point of the ground and direction where the covered share counts; odd, so that one lies on the point.
+///
+/// Rows and columns of the nine are shifted against each other so that no two lie on one line along the grid: an edge along it then
+/// crosses them one by one, and the share it leaves is known to a ninth instead of a third of the cell's width.
 const SAMPLES: usize = 3;
 
 impl Imprint {
@@ -22,6 +25,8 @@ impl Imprint {
         let vertices: Vec<Vec3> =
             surface.vertices.iter().map(|v| (pose * nalgebra::Point3::from(*v)).coords).collect();
         let (x_0, y_0) = (self.origin[0] - shift, self.origin[1] - shift);
+        // How far the n-th row or column of a group is shifted along itself.
+        let aside = |n: usize| (n as f64 - (k / 2) as f64) * fine / k as f64;
         for triangle in &surface.triangles {
             let [a, b, c] = triangle.map(|v| vertices[v as usize]);
             if a.z > self.ceiling && b.z > self.ceiling && c.z > self.ceiling {
@@ -36,13 +41,13 @@ impl Imprint {
                 let last = ((high - origin) / fine + 1e-9).floor().clamp(-1.0, n as f64 - 1.0);
                 first..((last + 1.0) as usize).max(first)
             };
-            let is = range(a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x), x_0, width);
-            let js = range(a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y), y_0, depth);
+            let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
+            let most = aside(k - 1);
             let slope = [-normal.x / normal.z, -normal.y / normal.z];
-            for j in js {
-                let y = y_0 + fine * j as f64;
-                for i in is.clone() {
-                    let x = x_0 + fine * i as f64;
+            for j in range(low.y - most, high.y + most, y_0, depth) {
+                let x_0 = x_0 + aside(j % k);
+                for i in range(low.x, high.x, x_0, width) {
+                    let (x, y) = (x_0 + fine * i as f64, y_0 + fine * j as f64 + aside(i % k));
                     let side =
                         |p: &Vec3, q: &Vec3| ((q.x - p.x) * (y - p.y) - (q.y - p.y) * (x - p.x)) / normal.z;
                     let (u, v, w) = (side(&b, &c), side(&c, &a), side(&a, &b));
@@ -90,6 +95,24 @@ mod tests {
     use grouser_geometry::{HeightGrid, lathe::lathe};
 
     use super::*;
+
+    #[test]
+    fn a_plate_along_the_grid_covers_its_area_wherever_it_lies() {
+        let grid = HeightGrid::covering([-1.0, -1.0], [2.0, 2.0], 0.08, |_, _| 0.0).unwrap();
+        let corners = [[-0.05, -0.15], [0.05, -0.15], [0.05, 0.15], [-0.05, 0.15]];
+        let vertices = corners.map(|[x, y]| Vec3::new(x, y, 0.0)).to_vec();
+        let plate = TriangleSurface { vertices, triangles: vec![[0, 2, 1], [0, 3, 2]] };
+        let mut worst = 0.0_f64;
+        for n in 0..200 {
+            let (x, y) = (0.0031 * f64::from(n) - 0.3, 0.0017 * f64::from(n) - 0.2);
+            let mut drawn = Imprint::new(&grid, [-0.6, -0.6], [0.6, 0.6], 0.2, PartialLoad::Proportional);
+            drawn.draw_surface(&Pose::translation(x, y, 0.0), &plate, 0);
+            let covered: f64 = drawn.nodes.iter().map(|node| node.coverage).sum();
+            worst = worst.max((covered * 0.08 * 0.08 / (0.1 * 0.3) - 1.0).abs());
+        }
+        // It was 0.22 with samples in rows and columns.
+        assert!(worst < 0.1, "{worst}");
+    }
 
     #[test]
     fn a_lathed_wheel_converges_to_the_cylinder() {

@@ -3,11 +3,10 @@
 use super::Row;
 use super::bodies::{space, wall};
 use grouser_contact::{
-    ArmNormalisation, F64, GrainInertia, GrainShape, HertzMindlin, Interaction, Material, PairTable,
-    PlaneShape, PlaneTilting, Quaternion, Rotating, RotationLaw, Sphere, Tail, Tilting, TiltingSettings,
-    Vector,
+    GrainInertia, GrainShape, HertzMindlin, Interaction, Material, PairTable, PlaneShape, PlaneTilting,
+    Quaternion, Rotating, RotationLaw, Sphere, Tail, Tilting, TiltingSettings, Vector,
 };
-use grouser_dem::{Bed, BedSettings, Failure, Grains, sphere};
+use grouser_dem::{Bed, BedSettings, Failure, sphere};
 use grouser_geometry::{Orientation, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -15,17 +14,16 @@ const ARMS: (&str, &str) = ("tilting arms", "closed form of Lichtenheldt & Schä
 const TOPPLING: (&str, &str) = ("toppling", "arctan(1/A) on the long side, arctan(A) on the short side");
 const LIMITS: (&str, &str) = ("tilting limits", "spheres; symmetry of a square");
 const TURNS: (&str, &str) = ("tilting energy", "conservation");
-const REST: (&str, &str) = ("angular grains at rest", "rest");
 
-const SAND: Material = Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 2600.0 };
-const RADIUS: f64 = 0.01;
+pub(super) const SAND: Material = Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 2600.0 };
+pub(super) const RADIUS: f64 = 0.01;
 
-fn tilting<const IS_ROUND: bool>(shape: GrainShape, smoothing_rad: f64) -> Tilting<IS_ROUND> {
+pub(super) fn tilting<const IS_ROUND: bool>(shape: GrainShape, smoothing_rad: f64) -> Tilting<IS_ROUND> {
     Tilting::new(&TiltingSettings { smoothing_rad, ..TiltingSettings::of(shape) }).expect("sound")
 }
 
 /// One grain 1 µm deep in the floor or above it, turned by `turn`.
-fn one<R: RotationLaw<f64>>(
+pub(super) fn one<R: RotationLaw<f64>>(
     rotation: R,
     settings: BedSettings,
     friction: f64,
@@ -41,7 +39,7 @@ fn one<R: RotationLaw<f64>>(
     bed
 }
 
-fn orientation<L: grouser_contact::ContactLaw<f64>>(bed: &Bed<L>) -> Orientation {
+pub(super) fn orientation<L: grouser_contact::ContactLaw<f64>>(bed: &Bed<L>) -> Orientation {
     bed.grains().orientations.as_ref().expect("tracked")[0]
 }
 
@@ -266,100 +264,4 @@ pub fn energy() -> Vec<Row> {
         (0.0, 1e-8),
     ));
     rows
-}
-
-/// A grain alone rests for 10⁶ steps, and one with twelve neighbours accounts for its energy, at the extremes of every constant.
-pub fn rest_and_extremes() -> Vec<Row> {
-    let gravity = Vec3::new(0.0, 0.0, -9.81);
-    let mut rows = Vec::new();
-    let law = tilting::<false>(GrainShape::Angular { aspect_ratio: 0.5 }, 5e-3);
-    let mut bed = one(law, BedSettings { gravity, ..wall(0) }, 0.5, Orientation::identity());
-    let _ = bed.run(20_000, 2e-5, |_| Ok::<(), Failure>(()));
-    let (place, turn) = (bed.grains().spheres[0].position, orientation(&bed));
-    let _ = bed.run(1_000_000, 2e-5, |_| Ok::<(), Failure>(()));
-    let moved = (bed.grains().spheres[0].position - place).norm();
-    let turned = orientation(&bed).angle_to(&turn);
-    rows.push(Row::absolute(REST, "way of a grain alone in 10⁶ steps", "m", moved, (0.0, 1e-9)));
-    rows.push(Row::absolute(REST, "turn of a grain alone in 10⁶ steps", "rad", turned, (0.0, 1e-6)));
-
-    let circle = GrainShape::Planes([PlaneShape::Circle { scale: 0.1 }; 3]);
-    // Bodies within the sphere: arms of a long side are not scaled up again to reach it.
-    let (small, root) = (0.05, 0.05_f64.sqrt());
-    let rectangle = |aspect_ratio, scale| PlaneShape::Rectangle { aspect_ratio, scale };
-    let within = |planes| {
-        let settings = TiltingSettings::of(GrainShape::Planes(planes));
-        let settings = TiltingSettings { arms: ArmNormalisation::LongSide, ..settings };
-        Tilting::new(&settings).expect("sound")
-    };
-    let scale = 0.1 / root;
-    let angular = within([rectangle(root, 0.1), rectangle(small, scale), rectangle(root, scale)]);
-    let bodies: [(&str, Tilting<true>); 5] = [
-        ("A = 0.05", tilting(GrainShape::Angular { aspect_ratio: small }, 5e-3)),
-        ("A = 1", tilting(GrainShape::Cube, 5e-3)),
-        ("circles, s = 0.1", tilting(circle, 5e-3)),
-        ("A = 1, s = 0.1", within([rectangle(1.0, 0.1); 3])),
-        ("A = 0.05, s from 0.1", angular),
-    ];
-    let themselves = |scale| {
-        let shape = GrainShape::Planes([rectangle(small, scale); 3]);
-        PlaneTilting::new(&TiltingSettings::of(shape)).expect("sound")
-    };
-    for degrees in [0.0_f64, 60.0] {
-        let friction = degrees.to_radians().tan();
-        let mut row = |name: &str, missed: f64| {
-            let what = format!("energy missed, twelve neighbours, {name}, φ = {degrees}°");
-            rows.push(Row::absolute(REST, what, "-", missed, (0.0, 5e-5)));
-        };
-        for (name, law) in bodies {
-            row(name, squeezed(law, friction));
-        }
-        for scale in [0.1, 1.0] {
-            let name = format!("three rectangles, A = 0.05, s = {scale}");
-            row(&name, squeezed(themselves(scale), friction));
-        }
-    }
-    rows
-}
-
-/// Grains that touch the one whose number is 0.
-fn contacts_of_the_middle(grains: &Grains<F64>) -> usize {
-    let middle = grains.ids.iter().position(|&id| id == 0).map(|place| grains.spheres[place].position);
-    let touches = |sphere: &&Sphere| {
-        middle.is_some_and(|middle| (0.0..2.0 * RADIUS).contains(&(sphere.position - middle).norm()))
-    };
-    grains.spheres.iter().filter(touches).count().saturating_sub(1)
-}
-
-/// Twelve grains rush onto one in their middle from all sides; what the ledger misses over the kinetic energy at the start.
-fn squeezed<R: RotationLaw<f64>>(rotation: R, friction: f64) -> f64 {
-    let golden = 0.5 * (1.0 + 5_f64.sqrt());
-    let mut places = vec![Vec3::zeros()];
-    for (a, b) in [(1.0, golden), (1.0, -golden), (-1.0, golden), (-1.0, -golden)] {
-        places.extend([Vec3::new(0.0, a, b), Vec3::new(a, b, 0.0), Vec3::new(b, 0.0, a)]);
-    }
-    let mut spheres: Vec<Sphere> = Vec::new();
-    for place in places {
-        let out = place.try_normalize(0.0).unwrap_or_default();
-        let mut grain: Sphere = sphere(out * 2.001 * RADIUS, RADIUS, SAND.density_kg_m3, 0);
-        let inward = out * -1.0 + Vec3::new(-out.y, out.x, 0.2);
-        grain.velocity =
-            if out.norm() > 0.0 { Vector::new(inward.x, inward.y, inward.z) } else { Vector::ZERO };
-        spheres.push(grain);
-    }
-    let between = Interaction { restitution: 0.5, friction };
-    let table = PairTable::new(&[SAND], Tail::CutCorrected, |_, _| between).expect("sound");
-    let law = Rotating { forces: HertzMindlin::<false, false>, rotation };
-    let mut bed = Bed::new(spheres, BedSettings { has_ledger: true, ..space() }, table, law).expect("sound");
-    bed.grains_mut().turn_randomly(5);
-    let begun = bed.energy().stored();
-    let mut most_contacts = 0;
-    for _ in 0..4000 {
-        if bed.step(1e-6).is_err() {
-            return f64::NAN;
-        }
-        most_contacts = most_contacts.max(contacts_of_the_middle(bed.grains()));
-    }
-    let energy = bed.energy();
-    let missed = (energy.stored() + energy.contacts.dissipated() - begun).abs() / begun;
-    if most_contacts >= 10 { missed } else { f64::NAN }
 }

@@ -1,6 +1,7 @@
 //! Cases with an analytical or published answer. One case is one function; a new one is a row of [`cases`].
 
 mod angular;
+mod angular_rest;
 mod bodies;
 mod chung_ooi;
 mod coupling;
@@ -121,7 +122,7 @@ const GRAINS: &[(&str, Rows)] = &[
     ("toppling", angular::toppling),
     ("tilting limits", angular::limits),
     ("tilting energy", angular::energy),
-    ("angular grains at rest", angular::rest_and_extremes),
+    ("angular grains at rest", angular_rest::rest_and_extremes),
     ("cut surfaces", coupling::cut_surfaces),
     ("rolling over triangles", coupling::rolling_over_triangles),
     ("bead on an elastic block", elastic_block::bead_on_block),

@@ -39,8 +39,8 @@ pub fn validate(check: &mut Check, ground: &SoftGround, vehicle: &Vehicle, route
                         &format!("tool.frames[{f}].axles[{a}].belts[{b}].equipment"),
                         format!("no drive has \"{}\" on", belt.equipment),
                         "one of the names in tool.equipment",
-                        "a misspelt name",
-                        String::new(),
+                        "a misspelt name, or a set taken out of the list",
+                        "keep the list; name the sets to drive with in motion.with_equipment".into(),
                     );
                 }
             }
