@@ -143,8 +143,6 @@ fn forty_at_rest() -> [f64; 2] {
     let (Some(before), Some(now)) = (after(&mut bed, 300_000), after(&mut bed, 1_000_000)) else {
         return [f64::NAN; 2];
     };
-    let largest = |of: fn(&(u32, Vector<f64>, Orientation), &(u32, Vector<f64>, Orientation)) -> f64| {
-        before.iter().zip(&now).map(|(a, b)| of(a, b)).fold(0.0, f64::max)
-    };
-    [largest(|a, b| (a.1 - b.1).norm()), largest(|a, b| a.2.angle_to(&b.2))]
+    let moves = before.iter().zip(&now).map(|(a, b)| [(a.1 - b.1).norm(), a.2.angle_to(&b.2)]);
+    moves.fold([0.0; 2], |most, one| [most[0].max(one[0]), most[1].max(one[1])])
 }
