@@ -1,5 +1,6 @@
 //! A chain of stiff links between two held ends, over wheels and on ground: where its joints come to rest.
 
+use super::banded::Banded;
 use nalgebra::{Matrix6, SMatrix, Vector6};
 
 /// Axial stiffness of a link and normal stiffness of a wheel \[N/m\]: two steel bars of 20 mm × 20 mm, 0.16 m long.
@@ -57,68 +58,6 @@ pub struct Settled {
     pub stiffness: Matrix6<f64>,
     /// Steps of the search.
     pub n_steps: usize,
-}
-
-/// Symmetric matrix whose rows reach three to the left of the diagonal.
-struct Banded {
-    rows: Vec<[f64; 4]>,
-}
-
-impl Banded {
-    #[inline(always)]
-    fn add(&mut self, i: usize, j: usize, value: f64) {
-        if j <= i {
-            self.rows[i][3 + j - i] += value;
-        }
-    }
-
-    /// Adds `k` between joints `a` and `b`, for displacement a − b and force on a; joints count from 1, others are held.
-    fn add_between(&mut self, a: usize, b: usize, k: [[f64; 2]; 2], n: usize) {
-        let is_free = |j: usize| (1..=n).contains(&j);
-        for (p, q) in [(a, a), (b, b), (a, b), (b, a)] {
-            if is_free(p) && is_free(q) {
-                let sign = if p == q { 1.0 } else { -1.0 };
-                for r in 0..2 {
-                    for c in 0..2 {
-                        self.add(2 * (p - 1) + r, 2 * (q - 1) + c, sign * k[r][c]);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Cholesky's factor L in place.
-    fn factorise(&mut self) {
-        for i in 0..self.rows.len() {
-            for j in i.saturating_sub(3)..=i {
-                let mut sum = self.rows[i][3 + j - i];
-                for k in i.saturating_sub(3).max(j.saturating_sub(3))..j {
-                    sum -= self.rows[i][3 + k - i] * self.rows[j][3 + k - j];
-                }
-                self.rows[i][3 + j - i] =
-                    if i == j { sum.max(1e-6 * STEADYING).sqrt() } else { sum / self.rows[j][3] };
-            }
-        }
-    }
-
-    /// Solves with the factor, for one right side or several.
-    fn solve<const N: usize>(&self, rhs: &mut [SMatrix<f64, 1, N>]) {
-        let n = self.rows.len();
-        for i in 0..n {
-            for k in i.saturating_sub(3)..i {
-                let known = rhs[k];
-                rhs[i] -= known * self.rows[i][3 + k - i];
-            }
-            rhs[i] /= self.rows[i][3];
-        }
-        for i in (0..n).rev() {
-            for k in i + 1..(i + 4).min(n) {
-                let known = rhs[k];
-                rhs[i] -= known * self.rows[k][3 + i - k];
-            }
-            rhs[i] /= self.rows[i][3];
-        }
-    }
 }
 
 /// Pulls of the links and pushes of the wheels on each joint \[N\], of their own beside the joints' positions.
@@ -310,7 +249,7 @@ impl Chain {
     ) -> (Vec<f64>, Banded) {
         let n = joints.len() - 2;
         let mut sprung = known.clone();
-        let mut k = Banded { rows: vec![[0.0, 0.0, 0.0, STEADYING]; 2 * n] };
+        let mut k = Banded::diagonal(STEADYING, 2 * n);
         for link in 0..=n {
             let (e, length) = Self::towards(joints[link], joints[link + 1]);
             let axial = self.axial(link, length, known.pulls[link]);
@@ -379,7 +318,7 @@ impl Chain {
                 }
             }
         }
-        k.rows.iter_mut().for_each(|row| row[3] -= (1.0 - 1e-3) * STEADYING);
+        k.add_to_diagonal(-(1.0 - 1e-3) * STEADYING);
         k.factorise();
         let mut follow = between.clone();
         k.solve(&mut follow);

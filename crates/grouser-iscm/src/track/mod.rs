@@ -3,6 +3,7 @@
 //! Links above the axles are held by the wheels; between their tops the track hangs as a catenary; below it is a chain that bends
 //! around the wheels and lies on the ground. Steps as in `docs/theory/iscm.md`, T1 to T4.
 
+mod banded;
 mod catenary;
 mod chain;
 mod drawn;
