@@ -100,14 +100,6 @@ impl Batch {
         }
     }
 
-    pub fn len(&self) -> usize {
-        self.len
-    }
-
-    pub fn is_full(&self) -> bool {
-        self.len == LANES
-    }
-
     /// Adds a polygon whose corners lie at `points` from the reference point \[m\]; its stiffness may not count.
     #[inline(always)]
     pub fn push(&mut self, points: &[[f64; 3]; 3], corners: &Corners, answer: &Answer, counts: bool) {
@@ -141,8 +133,8 @@ impl Batch {
             }
             self.line[0][n] = lines.c;
             self.line[1][n] = lines.k;
-            self.n_kinks = self.n_kinks.max(lines.n_kinks);
-            for (kink, &(at, bend)) in self.kinks.iter_mut().zip(&lines.kinks[..lines.n_kinks]) {
+            self.n_kinks = self.n_kinks.max(lines.kinks.len());
+            for (kink, &[at, bend]) in self.kinks.iter_mut().zip(lines.kinks) {
                 kink[0][n] = at;
                 kink[1][n] = bend;
             }

@@ -6,12 +6,14 @@ use grouser_geometry::{Pose, Vec3};
 use nalgebra::{Matrix3, Matrix6};
 
 use crate::batch::{Batch, LANES};
-use crate::footing::{Facet, Footing, Site};
+use crate::footing::{Facet, Facets, Footing, Sites};
 use crate::imprint::{Imprint, MOST_SAG};
 use crate::levels::Pressed;
-use crate::polygon::{Answer, Corners, PartialLoad, SubTriangles, integrate};
-use crate::response::{OneArray, Reloaded, Response, Stiff, ThreeArrays};
-use crate::terrain::{Terrain, Unloading};
+use crate::polygon::{Answer, Corners, PartialLoad, Sag, SubTriangles, integrate};
+use crate::response::{
+    KINKS, Kink, NO_KINKS, OneArray, Prepared, PreparedArray, Reloaded, Response, Stiff, ThreeArrays,
+};
+use crate::terrain::{PressedCell, Terrain, Unloading};
 use crate::track::{DrawnTrack, Followed};
 
 /// How forces are integrated.
@@ -80,19 +82,34 @@ pub struct FootImprint {
     pub tracks: Vec<DrawnTrack>,
     /// What of each imprint can press, by level of the ground.
     pub(crate) footings: Vec<Footing>,
+    /// The lines of the relationship where it is the same everywhere.
+    prepared: Option<Prepared>,
 }
 
-/// Present state of a point under one imprint.
-#[derive(Clone, Copy, Default)]
-struct Node {
+/// Present state of the points under one imprint, number by number.
+#[derive(Default)]
+struct Nodes {
     /// Sinkage if the gear stood here \[m\].
-    z: f64,
+    z: Vec<f64>,
     /// Height of the ground then \[m\].
-    height: f64,
+    height: Vec<f64>,
     /// Share of the cell that the gear covers.
-    share: f64,
-    /// Depth of the gear below the present ground \[m\].
-    depth: f64,
+    share: Vec<f64>,
+    /// Depth of the gear below the present ground \[m\], before it sees its neighbours.
+    depth: Vec<f64>,
+    /// How far the gear has sunk since it was drawn, at most \[m\].
+    sunk: f64,
+    /// Working space.
+    seen: Vec<f64>,
+}
+
+impl Nodes {
+    /// Corners of a triangle between three `sites`.
+    #[inline(always)]
+    fn corners(&self, sites: [usize; 3], sag: Sag) -> Corners {
+        let of = |lane: &[f64]| sites.map(|site| lane[site]);
+        Corners { z: of(&self.z), share: of(&self.share), depth: of(&self.depth), sag }
+    }
 }
 
 impl FootImprint {
@@ -104,7 +121,10 @@ impl FootImprint {
         partial: PartialLoad,
     ) -> Self {
         let footings = Footing::of(&layers, terrain, partial);
-        Self { layers, reference, tracks: Vec::new(), footings }
+        let field = terrain.field();
+        let prepared =
+            (!field.is_per_node()).then(|| Prepared::new(field.of_node(0), 1.0 / field.resolution()));
+        Self { layers, reference, tracks: Vec::new(), footings, prepared }
     }
 
     /// Force of the `terrain` on the gear after it moved by `motion` since the imprints were drawn.
@@ -119,9 +139,24 @@ impl FootImprint {
     ) -> FootLoad {
         let followed = self.followed(terrain, motion);
         let mut load = FootLoad { wrench: Wrench::default(), stiffness: followed.stiffness };
+        let ground = Ground::new(terrain, self.prepared.as_ref());
+        let (mut nodes, mut found, mut batch) = (Nodes::default(), Vec::new(), Batch::new());
         for footing in &self.footings {
-            let (nodes, sunk) = self.nodes(footing, terrain, motion, &followed, integration.partial);
-            self.load_footing(footing, &nodes, sunk, terrain, integration, &mut load, &mut listen);
+            self.stand(footing, motion, &followed, integration.partial, &mut nodes);
+            let Nodes { sunk, depth, seen, .. } = &mut nodes;
+            let facets = footing.facets(&self.layers, integration.partial, *sunk, depth, seen);
+            facets.pressing(&nodes.depth, &mut found);
+            let pressed = (facets, &found[..]);
+            self.load_footing(
+                footing,
+                pressed,
+                &nodes,
+                &ground,
+                integration,
+                &mut batch,
+                &mut load,
+                &mut listen,
+            );
         }
         load.stiffness.fill_lower_triangle_with_upper_triangle();
         load
@@ -135,23 +170,27 @@ impl FootImprint {
     /// The footprint: what it presses, as it stands on the ground on which it was drawn.
     pub(crate) fn print(&self, terrain: &Terrain, motion: &Pose) -> Footprint {
         let followed = self.followed(terrain, motion);
-        let mut parts: Vec<(usize, Pressed)> = Vec::new();
-        let mut pressed_nodes: Vec<usize> = Vec::new();
+        let mut parts: Vec<(usize, Pressed, bool)> = Vec::new();
+        let mut nodes = Nodes::default();
         for footing in &self.footings {
-            let (nodes, _) = self.nodes(footing, terrain, motion, &followed, PartialLoad::Proportional);
-            for (site, node) in footing.sites.iter().zip(nodes).filter(|(site, _)| site.share > 0.0) {
-                let pressed = Pressed { level: footing.level, share: site.share, height: node.height };
-                parts.push((site.on_grid, pressed));
-                if node.height < site.ground {
-                    pressed_nodes.push(site.on_grid);
-                }
+            self.stand(footing, motion, &followed, PartialLoad::Proportional, &mut nodes);
+            let Sites { share, ground, on_grid, .. } = &footing.sites;
+            parts.reserve(on_grid.len());
+            for n in (0..footing.sites.len()).filter(|&n| share[n] > 0.0) {
+                let pressed = Pressed { level: footing.level, share: share[n], height: nodes.height[n] };
+                parts.push((on_grid[n] as usize, pressed, nodes.height[n] < ground[n]));
             }
         }
-        pressed_nodes.sort_unstable();
-        pressed_nodes.dedup();
-        parts.retain(|(node, _)| pressed_nodes.binary_search(node).is_ok());
-        parts.sort_by_key(|(node, _)| *node);
-        Footprint(parts)
+        parts.sort_by_key(|(node, ..)| *node);
+        let mut print = Footprint::default();
+        for cell in parts.chunk_by(|a, b| a.0 == b.0).filter(|cell| cell.iter().any(|part| part.2)) {
+            let (node, first) = (cell[0].0, print.parts.len());
+            print.parts.extend(cell.iter().map(|(_, pressed, _)| *pressed));
+            let parts = first..print.parts.len();
+            let after = terrain.pressed(node, &print.parts[parts.clone()]);
+            print.cells.push(PrintedCell { node, n_before: terrain.loadings()[node], parts, after });
+        }
+        print
     }
 
     /// Rest of the slack tracks after the body moved.
@@ -161,125 +200,130 @@ impl FootImprint {
         followed
     }
 
-    /// F1, F2: sinkage, height and share of every point of a footing, and how far the gear has sunk since it was drawn, at most \[m\].
-    fn nodes(
+    /// F1, F2: sinkage, height and share of every point of a footing.
+    fn stand(
         &self,
         footing: &Footing,
-        terrain: &Terrain,
         motion: &Pose,
         followed: &Followed,
         partial: PartialLoad,
-    ) -> (Vec<Node>, f64) {
+        nodes: &mut Nodes,
+    ) {
         let turn: Matrix3<f64> = motion.rotation.to_rotation_matrix().matrix() - Matrix3::identity();
         let shift = motion.translation.vector;
-        let has_shifts = !followed.shifts.is_empty() && footing.layer + 1 < self.layers.len();
-        let original = terrain.grid().heights();
+        let Sites { position: [x, y, z], slope: [slope_x, slope_y], share, ground, undisturbed, .. } =
+            &footing.sites;
+        let n = footing.sites.len();
+        // First the rise of each point, then its height.
+        nodes.height.clear();
+        let rises = (0..n).map(|n| {
+            let position = Vec3::new(x[n], y[n], z[n]);
+            let d = turn * position + shift;
+            d.z - slope_x[n] * d.x - slope_y[n] * d.y
+        });
+        nodes.height.extend(rises);
         let mut sunk = 0.0_f64;
-        let stand = |site: &Site| {
-            let (z_0, ground) = (original[site.on_grid], site.ground);
-            let position = Vec3::from(site.position);
-            let rise = |d: Vec3| d.z - site.slope[0] * d.x - site.slope[1] * d.y;
-            let mut h = position.z + rise(turn * position + shift);
-            if has_shifts && let Some(shift) = followed.shift(site.owner) {
-                h += rise(shift.at(position));
-            }
-            sunk = sunk.max(position.z - h);
-            match partial {
-                PartialLoad::Proportional => {
-                    Node { z: z_0 - h, height: h, share: site.share, depth: ground - h }
-                }
-                // As printed: a point is loaded and follows the gear, or is not and stays.
-                PartialLoad::Step => {
-                    let share = if h < ground { site.share.round() } else { 0.0 };
-                    let h = h.min(ground);
-                    Node { z: z_0 - h, height: h, share, depth: ground - h }
-                }
-            }
-        };
-        let mut nodes: Vec<Node> = footing.sites.iter().map(stand).collect();
-        let seen: Vec<(u32, f64)> = footing.seen_depths(|site| nodes[site as usize].depth).collect();
-        for (site, depth) in seen {
-            nodes[site as usize].depth = depth;
+        for (height, z) in nodes.height.iter_mut().zip(z) {
+            *height += z;
         }
-        (nodes, sunk)
+        if !followed.shifts.is_empty() && footing.layer + 1 < self.layers.len() {
+            for n in 0..n {
+                let site = footing.sites.get(n);
+                if let Some(shift) = followed.shift(site.owner) {
+                    let d = shift.at(site.position.into());
+                    nodes.height[n] += d.z - site.slope[0] * d.x - site.slope[1] * d.y;
+                }
+            }
+        }
+        for (height, z) in nodes.height.iter().zip(z) {
+            sunk = if z - height > sunk { z - height } else { sunk };
+        }
+        nodes.sunk = sunk;
+        nodes.share.clear();
+        nodes.share.extend(share);
+        if partial == PartialLoad::Step {
+            // As printed: a point is loaded and follows the gear, or is not and stays.
+            for n in 0..n {
+                nodes.share[n] = if nodes.height[n] < ground[n] { share[n].round() } else { 0.0 };
+                nodes.height[n] = nodes.height[n].min(ground[n]);
+            }
+        }
+        nodes.z.clear();
+        nodes.z.extend(undisturbed.iter().zip(&nodes.height).map(|(z_0, height)| z_0 - height));
+        nodes.depth.clear();
+        nodes.depth.extend(ground.iter().zip(&nodes.height).map(|(ground, height)| ground - height));
     }
 
     /// Deepest sinkage of soil under the gear where it was drawn \[m\].
     pub(crate) fn deepest(&self, terrain: &Terrain, partial: PartialLoad) -> f64 {
         let followed = self.followed(terrain, &Pose::identity());
+        let mut nodes = Nodes::default();
         self.footings.iter().fold(0.0, |deepest, footing| {
-            let (nodes, _) = self.nodes(footing, terrain, &Pose::identity(), &followed, partial);
+            self.stand(footing, &Pose::identity(), &followed, partial, &mut nodes);
             let sag = MOST_SAG * self.layers[footing.layer].spacing;
-            let sites = footing.sites.iter().zip(&nodes);
-            let is_soil = |(site, node): &(&Site, &Node)| {
-                node.share > 0.0 && node.height < site.ground + sag && !terrain.is_fixed(site.on_grid)
+            let Sites { ground, on_grid, .. } = &footing.sites;
+            let is_soil = |&n: &usize| {
+                nodes.share[n] > 0.0
+                    && nodes.height[n] < ground[n] + sag
+                    && !terrain.is_fixed(on_grid[n] as usize)
             };
-            sites.filter(is_soil).fold(deepest, |deepest, (_, node)| node.z.max(deepest))
+            (0..footing.sites.len()).filter(is_soil).fold(deepest, |deepest, n| nodes.z[n].max(deepest))
         })
     }
 
-    /// F3 to F5: integrates over all polygons of a footing.
+    /// F3 to F5: integrates over the polygons of a footing that were `found` to press.
     fn load_footing(
         &self,
         footing: &Footing,
-        nodes: &[Node],
-        sunk: f64,
-        terrain: &Terrain,
+        (facets, found): (&Facets, &[u32]),
+        nodes: &Nodes,
+        ground: &Ground,
         integration: &Integration,
+        batch: &mut Batch,
         load: &mut FootLoad,
         listen: &mut impl FnMut(&LoadedPolygon),
     ) {
         let layer = footing.layer;
-        let ground = Ground::new(terrain);
         // Slack tracks have answered for theirs.
         let may_follow = layer + 1 < self.layers.len() && !self.tracks.is_empty();
-        let mut batch = Batch::new();
-        let mut pressed: [Option<&Facet>; LANES] = [None; LANES];
-        for facet in footing.facets(&self.layers, integration.partial, sunk) {
-            let [a, b, c] = facet.sites.map(|site| &nodes[site as usize]);
-            let corners = Corners {
-                z: [a.z, b.z, c.z],
-                share: [a.share, b.share, c.share],
-                depth: [a.depth, b.depth, c.depth],
-                sag: facet.sag,
-            };
-            if corners.is_free() {
-                continue;
+        let mut kinks = NO_KINKS;
+        let [x, y] = [&footing.sites.position[0], &footing.sites.position[1]];
+        for pressed in found.chunks(LANES) {
+            for &n in pressed {
+                let facet = &facets.facets[n as usize];
+                let sites = facet.sites.map(|site| site as usize);
+                let corners = nodes.corners(sites, facets.sag(n as usize));
+                let on_grid = || sites.map(|site| footing.sites.on_grid[site] as usize);
+                let answer = ground.answer(facet.is_fixed, on_grid, &corners, integration, &mut kinks);
+                let point = |site: usize| {
+                    let height = nodes.height[site];
+                    [x[site] - self.reference.x, y[site] - self.reference.y, height - self.reference.z]
+                };
+                let follows = may_follow && self.tracks.iter().any(|track| track.owns(facet.owner));
+                batch.push(&sites.map(point), &corners, &answer, !follows);
             }
-            let sites = facet.sites.map(|site| &footing.sites[site as usize]);
-            let answer = ground.answer(&sites.map(|site| site.on_grid), &corners, integration);
-            let point = |site: &Site, node: &Node| {
-                let [x, y, _] = site.position;
-                [x - self.reference.x, y - self.reference.y, node.height - self.reference.z]
-            };
-            let follows = may_follow && self.tracks.iter().any(|track| track.owns(facet.owner));
-            pressed[batch.len()] = Some(facet);
-            let points = [point(sites[0], a), point(sites[1], b), point(sites[2], c)];
-            batch.push(&points, &corners, &answer, !follows);
-            if batch.is_full() {
-                self.collect(layer, nodes, integration, &mut batch, &pressed, load, listen);
-            }
+            let pressed = pressed.iter().map(|&n| &facets.facets[n as usize]);
+            self.collect(layer, nodes, integration, batch, pressed, load, listen);
         }
-        self.collect(layer, nodes, integration, &mut batch, &pressed, load, listen);
     }
 
     /// F4, F5: force, position and stiffness of a batch of `pressed` polygons; empties the batch.
     #[inline(always)]
-    fn collect(
+    fn collect<'a>(
         &self,
         layer: usize,
-        nodes: &[Node],
+        nodes: &Nodes,
         integration: &Integration,
         batch: &mut Batch,
-        pressed: &[Option<&Facet>; LANES],
+        pressed: impl Iterator<Item = &'a Facet>,
         load: &mut FootLoad,
         listen: &mut impl FnMut(&LoadedPolygon),
     ) {
         let spacing = self.layers[layer].spacing;
         batch.answer(&integration.sub_triangles, spacing, &mut load.wrench, &mut load.stiffness);
-        for (n, facet) in pressed[..batch.len()].iter().enumerate() {
-            let (Some(facet), Some(polygon)) = (facet, batch.loaded(n)) else { continue };
-            let share = facet.sites.iter().map(|&site| nodes[site as usize].share).sum::<f64>() / 3.0;
+        for (n, facet) in pressed.enumerate() {
+            let Some(polygon) = batch.loaded(n) else { continue };
+            let share = facet.sites.iter().map(|&site| nodes.share[site as usize]).sum::<f64>() / 3.0;
             listen(&LoadedPolygon {
                 layer,
                 owner: facet.owner,
@@ -295,14 +339,31 @@ impl FootImprint {
     }
 }
 
-/// Parts of gear and the nodes of the terrain that they press, in the order of the nodes.
-pub(crate) struct Footprint(Vec<(usize, Pressed)>);
+/// What gear presses, cell by cell in the order of the nodes.
+#[derive(Default)]
+pub(crate) struct Footprint {
+    cells: Vec<PrintedCell>,
+    parts: Vec<Pressed>,
+}
+
+/// A cell of the terrain, the parts of the gear in it, and what becomes of it if nothing presses it before.
+struct PrintedCell {
+    node: usize,
+    /// Footprints that had deepened it then.
+    n_before: u32,
+    parts: std::ops::Range<usize>,
+    after: Option<PressedCell>,
+}
 
 impl Footprint {
     /// Presses.
     pub fn leave(&self, terrain: &mut Terrain) {
-        for cell in self.0.chunk_by(|a, b| a.0 == b.0) {
-            terrain.press(cell[0].0, cell.iter().map(|(_, pressed)| *pressed));
+        for PrintedCell { node, n_before, parts, after } in &self.cells {
+            if terrain.loadings()[*node] == *n_before {
+                after.iter().for_each(|after| terrain.set_pressed(*node, after));
+            } else {
+                terrain.press(*node, &self.parts[parts.clone()]); // Another foot stands here too.
+            }
         }
     }
 }
@@ -312,45 +373,60 @@ struct Ground<'a> {
     terrain: &'a Terrain,
     /// Values of the arrays per sinkage \[1/m\].
     per_resolution: f64,
+    /// The lines of the relationship where it is the same everywhere.
+    prepared: Option<&'a Prepared>,
 }
 
 impl<'a> Ground<'a> {
-    fn new(terrain: &'a Terrain) -> Self {
-        Self { terrain, per_resolution: 1.0 / terrain.field().resolution() }
+    fn new(terrain: &'a Terrain, prepared: Option<&'a Prepared>) -> Self {
+        Self { terrain, per_resolution: 1.0 / terrain.field().resolution(), prepared }
     }
 
-    /// F3, F4: the ground's answer under one polygon.
+    /// F3, F4: the ground's answer under one polygon with its corners at nodes `on_grid`, all on rigid objects or not. `kinks` is working
+    /// space.
     #[inline(always)]
-    fn answer(&self, on_grid: &[usize; 3], corners: &Corners, integration: &Integration) -> Answer {
-        let Self { terrain, per_resolution } = *self;
+    fn answer<'s>(
+        &self,
+        is_fixed: bool,
+        on_grid: impl Fn() -> [usize; 3],
+        corners: &Corners,
+        integration: &Integration,
+        kinks: &'s mut [Kink; KINKS],
+    ) -> Answer<'s>
+    where
+        'a: 's,
+    {
+        let Self { terrain, per_resolution, prepared } = *self;
         let (sub, partial) = (&integration.sub_triangles, integration.partial);
-        if on_grid.iter().all(|&node| terrain.is_fixed(node)) {
-            return integrate(sub, Stiff(Terrain::FIXED_STIFFNESS), corners, partial, 0.0); // P2 Eq. (4)
+        if is_fixed {
+            return integrate(sub, Stiff(Terrain::FIXED_STIFFNESS), corners, partial, 0.0, kinks); // P2 Eq. (4)
         }
         let field = terrain.field();
-        if field.is_per_node() {
-            let pressures = on_grid.map(|node| field.of_node(node));
-            self.soil(ThreeArrays { pressures, per_resolution }, corners, integration)
+        if let Some(prepared) = prepared {
+            let array = OneArray { pressures: field.of_node(0), per_resolution };
+            self.soil(PreparedArray { array, prepared }, corners, integration, kinks)
         } else {
-            let pressures = field.of_node(0);
-            self.soil(OneArray { pressures, per_resolution }, corners, integration)
+            let pressures = on_grid().map(|node| field.of_node(node));
+            self.soil(ThreeArrays { pressures, per_resolution }, corners, integration, kinks)
         }
     }
 
     #[inline(always)]
-    fn soil(
+    fn soil<'s>(
         &self,
-        virgin: impl Response,
+        virgin: impl Response + 's,
         corners: &Corners,
         Integration { sub_triangles, partial }: &Integration,
-    ) -> Answer {
+        kinks: &'s mut [Kink; KINKS],
+    ) -> Answer<'s> {
         match self.terrain.unloading() {
             Unloading::Plastic { contact_distance } => {
-                integrate(sub_triangles, virgin, corners, *partial, contact_distance)
+                integrate(sub_triangles, virgin, corners, *partial, contact_distance, kinks)
             }
             Unloading::Elastic { stiffness } => {
                 let residual = [0, 1, 2].map(|k| corners.z[k] - corners.depth[k]);
-                integrate(sub_triangles, Reloaded { virgin, stiffness, residual }, corners, *partial, 0.0)
+                let ground = Reloaded { virgin, stiffness, residual };
+                integrate(sub_triangles, ground, corners, *partial, 0.0, kinks)
             }
         }
     }

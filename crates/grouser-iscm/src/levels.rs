@@ -106,19 +106,18 @@ impl Levels {
     }
 
     /// G2: the levels after `parts` pressed on them; `pressed` gives what a level becomes that a part presses, nothing where it stands above.
-    pub fn after(
-        &self,
-        parts: impl Iterator<Item = Pressed>,
-        pressed: impl Fn(&Level, f64) -> Option<Level>,
-    ) -> Option<Self> {
+    pub fn after(&self, parts: &[Pressed], pressed: impl Fn(&Level, f64) -> Option<Level>) -> Option<Self> {
         let mut left = self.0;
-        let mut all: Vec<Level> = Vec::with_capacity(4 * MOST_LEVELS);
+        let mut all: Vec<Level> = Vec::new();
         for part in parts {
             let level = self.get(part.level);
             let share = part.share.min(left[part.level].share);
             if share > SLIVER
                 && let Some(level) = pressed(level, part.height)
             {
+                if all.is_empty() {
+                    all.reserve_exact(parts.len() + MOST_LEVELS);
+                }
                 all.push(Level { share, ..level });
                 left[part.level].share -= share;
             }
@@ -213,12 +212,12 @@ mod tests {
         };
         let parts =
             [Pressed { level: 2, share: 0.1, height: -0.2 }, Pressed { level: 0, share: 0.3, height: -0.01 }];
-        let after = prints().after(parts.into_iter(), pressed).unwrap();
+        let after = prints().after(&parts, pressed).unwrap();
         let volume = |levels: &Levels| levels.0.iter().map(|level| level.share * level.sinkage).sum::<f64>();
         assert!((volume(&after) - volume(&prints()) - 0.1 * (0.2 - 0.07)).abs() < 1e-12, "{after:?}");
         // The two nearest by share and depth are joined: what was left at 0.07 m and what lay at 0.10 m.
         assert!((after.get(2).sinkage - (0.2 * 0.07 + 0.4 * 0.10) / 0.6).abs() < 1e-12, "{after:?}");
         assert!(after.get(0).sinkage == 0.2 && after.get(1).sinkage == 0.13, "{after:?}");
-        assert!(prints().after(parts[1..].iter().copied(), pressed).is_none());
+        assert!(prints().after(&parts[1..], pressed).is_none());
     }
 }

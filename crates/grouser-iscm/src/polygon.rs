@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::response::{Lines, OneArray, Response};
+use crate::response::{KINKS, Kink, Lines, OneArray, Response};
 
 /// How a triangle is integrated of which only some corners are loaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -98,6 +98,12 @@ impl Sag {
         Self { products, range: [0.25 * least, most / 3.0] }
     }
 
+    /// Most that sinkage and depth are larger than those between the corners \[m\].
+    #[inline(always)]
+    pub fn most(&self) -> f64 {
+        self.range[1]
+    }
+
     /// Whether the underside is flat.
     #[inline(always)]
     pub fn is_none(&self) -> bool {
@@ -106,7 +112,7 @@ impl Sag {
 }
 
 #[inline(always)]
-fn largest([a, b, c]: [f64; 3]) -> f64 {
+pub(crate) fn largest([a, b, c]: [f64; 3]) -> f64 {
     let ab = if a > b { a } else { b };
     if ab > c { ab } else { c }
 }
@@ -115,14 +121,6 @@ fn largest([a, b, c]: [f64; 3]) -> f64 {
 fn smallest([a, b, c]: [f64; 3]) -> f64 {
     let ab = if a < b { a } else { b };
     if ab < c { ab } else { c }
-}
-
-impl Corners {
-    /// Whether the gear presses nowhere.
-    #[inline(always)]
-    pub fn is_free(&self) -> bool {
-        largest(self.depth) + self.sag.range[1] <= 0.0
-    }
 }
 
 /// Means over a triangle of pressure and what follows from it.
@@ -142,35 +140,36 @@ fn blend(b: &[f64; 3], values: &[f64; 3]) -> f64 {
 }
 
 /// What one triangle gives, or how it is found together with others.
-pub(crate) enum Answer {
+pub(crate) enum Answer<'a> {
     /// The sums over all centres.
     Load(PolygonLoad),
     /// Pressure along straight lines, proportional to what is covered: summed many at a time ([`crate::batch`]).
     OnLines {
         /// The pressure.
-        lines: Lines,
+        lines: Lines<'a>,
         /// Depth over which contact builds up \[m\].
         contact: f64,
     },
 }
 
-/// Integrates over one triangle, or says along which lines; contact builds up over `contact` \[m\] of depth.
+/// Integrates over one triangle, or says along which lines; contact builds up over `contact` \[m\] of depth. `kinks` is working space.
 #[inline(always)]
-pub(crate) fn integrate(
+pub(crate) fn integrate<'a>(
     sub: &SubTriangles,
-    ground: impl Response,
+    ground: impl Response + 'a,
     corners: &Corners,
     partial: PartialLoad,
     contact: f64,
-) -> Answer {
+    kinks: &'a mut [Kink; KINKS],
+) -> Answer<'a> {
     let Corners { z, share, depth, sag } = corners;
     let [least, most] = sag.range;
     let is_deep = partial == PartialLoad::Step || smallest(*depth) + least >= contact;
     let is_full = *share == [1.0; 3] && is_deep;
     let is_smooth = is_full || (is_deep && partial == PartialLoad::Proportional);
     let range = [smallest(*z) + least, largest(*z) + most];
-    match ground.lines(range) {
-        Some(lines) if is_smooth && lines.n_kinks == 0 && (is_full || sag.is_none()) => {
+    match ground.lines(range, kinks) {
+        Some(lines) if is_smooth && lines.kinks.is_empty() && (is_full || sag.is_none()) => {
             Answer::Load(on_a_line(sub, lines.c, lines.k, corners, is_full))
         }
         Some(lines) if partial == PartialLoad::Proportional => Answer::OnLines { lines, contact },
@@ -259,7 +258,7 @@ pub fn polygon_force(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::response::Stiff;
+    use crate::response::{NO_KINKS, Stiff};
 
     #[test]
     fn sub_triangles_tile_the_triangle() {
@@ -304,7 +303,8 @@ mod tests {
             let z = z.map(|z| z + shift);
             for share in [[1.0; 3], [0.2, 1.0, 0.7], [0.0, 0.3, 0.0]] {
                 let corners = Corners { z, share, depth: z, sag: Sag::default() };
-                let short = integrate(&sub, array, &corners, PartialLoad::Proportional, 1e-4);
+                let mut kinks = NO_KINKS;
+                let short = integrate(&sub, array, &corners, PartialLoad::Proportional, 1e-4, &mut kinks);
                 let Answer::Load(short) = short else { panic!("one line in {corners:?}") };
                 let long = by_centres(&sub, Long(c, k), &corners, PartialLoad::Proportional, 1e-4);
                 assert!((short.pressure - long.pressure).abs() < 1e-9 * long.pressure);

@@ -5,58 +5,115 @@ use crate::pressure::interpolate;
 /// Most kinks of the pressure within one triangle that are worked on together.
 pub(crate) const KINKS: usize = 8;
 
+/// Where a line bends \[m\] and by how much \[Pa/m\].
+pub(crate) type Kink = [f64; 2];
+pub(crate) const NO_KINKS: [Kink; KINKS] = [[0.0; 2]; KINKS];
+
 /// Pressure between two sinkages as straight lines: c + k z, and a further slope beyond each kink.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lines {
+pub(crate) struct Lines<'a> {
     pub c: f64,
     pub k: f64,
-    pub n_kinks: usize,
-    /// Where the line bends \[m\] and by how much \[Pa/m\].
-    pub kinks: [(f64, f64); KINKS],
+    pub kinks: &'a [Kink],
 }
 
-impl Lines {
-    #[inline(always)]
-    fn straight(c: f64, k: f64) -> Self {
-        Self { c, k, n_kinks: 0, kinks: [(0.0, 0.0); KINKS] }
-    }
+/// Numbers of the first and last line of an array of `n` values from sinkage `low` to `high` \[m\].
+#[inline(always)]
+fn first_and_last(n: usize, per_resolution: f64, [low, high]: [f64; 2]) -> (usize, usize) {
+    let last = (n - 2) as f64;
+    let number = |z: f64| (z * per_resolution).max(0.0).min(last) as u32 as usize;
+    (number(low), number(high))
+}
 
-    /// The lines of an array that `at` reads (value number n), from sinkage `low` to `high` \[m\].
-    #[inline(always)]
-    fn of_array(
-        at: impl Fn(usize) -> f64,
-        n: usize,
-        per_resolution: f64,
-        [low, high]: [f64; 2],
-    ) -> Option<Self> {
-        let first = ((low * per_resolution).max(0.0) as usize).min(n - 2);
-        let last = ((high * per_resolution).max(0.0) as usize).min(n - 2);
-        if last - first > KINKS {
-            return None;
-        }
-        let (mut here, mut next) = (at(first), at(first + 1));
-        let mut slope = next - here;
-        let mut lines = Self::straight(here - first as f64 * slope, slope * per_resolution);
-        for value in first + 1..=last {
-            (here, next) = (next, at(value + 1));
-            lines.kinks[lines.n_kinks] =
-                (value as f64 / per_resolution, (next - here - slope) * per_resolution);
-            lines.n_kinks += 1;
-            slope = next - here;
-        }
-        Some(lines)
-    }
+/// Line number `first` of values that `at` reads: its pressure at no sinkage and its slope.
+#[inline(always)]
+fn line(at: impl Fn(usize) -> f64, first: usize, per_resolution: f64) -> [f64; 2] {
+    let slope = at(first + 1) - at(first);
+    [at(first) - first as f64 * slope, slope * per_resolution]
+}
+
+/// The kink at a value.
+#[inline(always)]
+fn kink(at: impl Fn(usize) -> f64, value: usize, per_resolution: f64) -> Kink {
+    let (before, after) = (at(value) - at(value - 1), at(value + 1) - at(value));
+    [value as f64 / per_resolution, (after - before) * per_resolution]
 }
 
 /// What the ground under one triangle answers.
 pub(crate) trait Response: Copy {
     /// Pressure \[Pa\] and its slope \[Pa/m\] at barycentric `b` and sinkage `z` \[m\].
     fn pressure(&self, b: &[f64; 3], z: f64) -> (f64, f64);
-    /// The same for all sinkages between two \[m\], if they lie on few straight lines.
+    /// The same for all sinkages between two \[m\], if they lie on few straight lines; `kinks` may hold where they bend.
     #[inline(always)]
-    fn lines(&self, _range: [f64; 2]) -> Option<Lines> {
+    fn lines<'s>(self, _range: [f64; 2], _kinks: &'s mut [Kink; KINKS]) -> Option<Lines<'s>>
+    where
+        Self: 's,
+    {
         None
     }
+}
+
+/// Lines and kinks of one array, made once for many triangles.
+#[derive(Clone, Debug)]
+pub(crate) struct Prepared {
+    /// Pressure at no sinkage and slope of the line after each value but the last.
+    lines: Vec<[f64; 2]>,
+    /// The kink at each value but the last; none at the first.
+    kinks: Vec<Kink>,
+}
+
+impl Prepared {
+    pub fn new(pressures: &[f64], per_resolution: f64) -> Self {
+        let (at, n) = (|value: usize| pressures[value], pressures.len());
+        let kinks = (1..n - 1).map(|value| kink(at, value, per_resolution));
+        Self {
+            lines: (0..n - 1).map(|first| line(at, first, per_resolution)).collect(),
+            kinks: std::iter::once([0.0; 2]).chain(kinks).collect(),
+        }
+    }
+}
+
+/// Soil with one prepared array for all triangles.
+#[derive(Clone, Copy)]
+pub(crate) struct PreparedArray<'a> {
+    pub array: OneArray<'a>,
+    pub prepared: &'a Prepared,
+}
+
+impl Response for PreparedArray<'_> {
+    #[inline(always)]
+    fn pressure(&self, b: &[f64; 3], z: f64) -> (f64, f64) {
+        self.array.pressure(b, z)
+    }
+
+    #[inline(always)]
+    fn lines<'s>(self, range: [f64; 2], _: &'s mut [Kink; KINKS]) -> Option<Lines<'s>>
+    where
+        Self: 's,
+    {
+        let OneArray { pressures, per_resolution } = self.array;
+        let (first, last) = first_and_last(pressures.len(), per_resolution, range);
+        let [c, k] = self.prepared.lines[first];
+        (last - first <= KINKS).then(|| Lines { c, k, kinks: &self.prepared.kinks[first + 1..=last] })
+    }
+}
+
+/// The lines of an array of `n` values that `at` reads over a range of sinkage \[m\].
+#[inline(always)]
+fn lines<'s>(
+    at: impl Fn(usize) -> f64,
+    n: usize,
+    per_resolution: f64,
+    range: [f64; 2],
+    kinks: &'s mut [Kink; KINKS],
+) -> Option<Lines<'s>> {
+    let (first, last) = first_and_last(n, per_resolution, range);
+    let bends = kinks.get_mut(..last - first)?;
+    for (bend, value) in bends.iter_mut().zip(first + 1..) {
+        *bend = kink(&at, value, per_resolution);
+    }
+    let [c, k] = line(&at, first, per_resolution);
+    Some(Lines { c, k, kinks: bends })
 }
 
 /// Soil with one array for the whole triangle.
@@ -74,8 +131,11 @@ impl Response for OneArray<'_> {
     }
 
     #[inline(always)]
-    fn lines(&self, range: [f64; 2]) -> Option<Lines> {
-        Lines::of_array(|n| self.pressures[n], self.pressures.len(), self.per_resolution, range)
+    fn lines<'s>(self, range: [f64; 2], kinks: &'s mut [Kink; KINKS]) -> Option<Lines<'s>>
+    where
+        Self: 's,
+    {
+        lines(|n| self.pressures[n], self.pressures.len(), self.per_resolution, range, kinks)
     }
 }
 
@@ -95,9 +155,12 @@ impl Response for ThreeArrays<'_> {
     }
 
     #[inline(always)]
-    fn lines(&self, range: [f64; 2]) -> Option<Lines> {
+    fn lines<'s>(self, range: [f64; 2], kinks: &'s mut [Kink; KINKS]) -> Option<Lines<'s>>
+    where
+        Self: 's,
+    {
         let [a, b, c] = self.pressures;
-        Lines::of_array(|n| (a[n] + b[n] + c[n]) / 3.0, a.len(), self.per_resolution, range)
+        lines(|n| (a[n] + b[n] + c[n]) / 3.0, a.len(), self.per_resolution, range, kinks)
     }
 }
 
@@ -130,7 +193,10 @@ impl Response for Stiff {
     }
 
     #[inline(always)]
-    fn lines(&self, range: [f64; 2]) -> Option<Lines> {
-        (range[0] >= 0.0).then(|| Lines::straight(0.0, self.0))
+    fn lines<'s>(self, range: [f64; 2], _: &'s mut [Kink; KINKS]) -> Option<Lines<'s>>
+    where
+        Self: 's,
+    {
+        (range[0] >= 0.0).then_some(Lines { c: 0.0, k: self.0, kinks: &[] })
     }
 }

@@ -32,6 +32,8 @@ pub struct RunState {
     pub terrain: Terrain,
     /// Where the machine stands.
     pub configuration: Configuration,
+    /// Degrees of freedom one intermediate step before; none at the start.
+    pub before: Option<Vec<f64>>,
     /// Run steps done.
     pub n_steps: usize,
     /// Centres of all wheels at the last equilibrium \[m\].
@@ -115,11 +117,12 @@ impl RunState {
         let mut state = Self {
             terrain,
             configuration: rest.configuration.clone(),
+            before: None,
             n_steps: 0,
             wheel_centres: wheel_centres(machine, &rest.frozen),
             n_limited: 0,
         };
-        leave_footprint(&mut state.terrain, &rest.frozen);
+        rest.frozen.stamp_here(&mut state.terrain);
         Ok(state)
     }
 
@@ -143,18 +146,13 @@ impl RunState {
         let before = self.distance(settings);
         let n = settings.intermediate_steps + 1;
         let mut n_evaluations = 0;
-        let mut last: Option<Vec<f64>> = None;
         for k in 1..n {
             let distance = before + settings.run_step * k as f64 / n as f64;
-            // The machine goes on as it went in the step before: a good place to search from.
-            let here = machine.mechanism.dofs(&self.configuration);
-            if let Some(last) = last.replace(here.clone()) {
-                let ahead: Vec<f64> = here.iter().zip(&last).map(|(a, b)| 2.0 * a - b).collect();
-                machine.mechanism.set_dofs(&mut self.configuration, &ahead);
-            }
+            self.go_on(machine);
             n_evaluations += self.intermediate(machine, settings, distance)?; // R2, R3
         }
         let distance = before + settings.run_step;
+        self.go_on(machine);
         let rest = self.rest(machine, settings, distance, &settings.search)?; // R4
         let mut result = self.measure(machine, distance, &rest); // R5
         result.n_evaluations += n_evaluations;
@@ -162,8 +160,17 @@ impl RunState {
         self.wheel_centres = wheel_centres(machine, &rest.frozen);
         self.n_limited += usize::from(rest.last_change > settings.search.position_tolerance);
         self.n_steps += 1;
-        leave_footprint(&mut self.terrain, &rest.frozen);
+        rest.frozen.stamp_here(&mut self.terrain);
         Ok(result)
+    }
+
+    /// Moves the machine on as it went in the intermediate step before: a good place to search from.
+    fn go_on(&mut self, machine: &Machine) {
+        let here = machine.mechanism.dofs(&self.configuration);
+        if let Some(before) = self.before.replace(here.clone()) {
+            let ahead: Vec<f64> = here.iter().zip(&before).map(|(a, b)| 2.0 * a - b).collect();
+            machine.mechanism.set_dofs(&mut self.configuration, &ahead);
+        }
     }
 
     /// R2: a loose equilibrium; R3: lifted until the ground carries less than the weight; footprint.
@@ -200,8 +207,7 @@ impl RunState {
     }
 
     fn measure(&self, machine: &Machine, distance: f64, rest: &Equilibrium) -> StepResult {
-        let mut polygons = vec![Vec::new(); machine.feet.len()];
-        let loads = rest.frozen.loads(machine, &self.terrain, |foot, polygon| polygons[foot].push(*polygon));
+        let polygons = rest.frozen.polygons(machine, &self.terrain);
         let centres = wheel_centres(machine, &rest.frozen);
         let wheels: Vec<Vec<WheelResistance>> = (0..machine.feet.len())
             .map(|foot| {
@@ -218,7 +224,7 @@ impl RunState {
             configuration: rest.configuration.clone(),
             total: WheelResistance::total(wheels.iter().flatten()),
             wheels,
-            foot_loads: loads.iter().map(|l| l.wrench.force.z).collect(),
+            foot_loads: rest.frozen.loads.iter().map(|l| l.wrench.force.z).collect(),
             n_evaluations: rest.n_evaluations,
         }
     }
@@ -227,10 +233,4 @@ impl RunState {
 fn wheel_centres(machine: &Machine, frozen: &Frozen) -> Vec<Vec<Vec3>> {
     let centre = |body: usize, c: Vec3| (frozen.poses[body] * nalgebra::Point3::from(c)).coords;
     machine.feet.iter().map(|f| f.wheels.iter().map(|w| centre(f.body, w.centre)).collect()).collect()
-}
-
-fn leave_footprint(terrain: &mut Terrain, frozen: &Frozen) {
-    for imprint in &frozen.imprints {
-        imprint.stamp(terrain, &grouser_geometry::Pose::identity());
-    }
 }

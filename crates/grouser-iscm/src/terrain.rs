@@ -59,6 +59,12 @@ pub struct Terrain {
     levels: Vec<Levels>,
 }
 
+/// What a cell becomes where it is pressed.
+pub(crate) struct PressedCell {
+    levels: Levels,
+    deepest: f64,
+}
+
 /// Why a terrain cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum TerrainError {
@@ -223,15 +229,23 @@ impl Terrain {
 
     /// Presses the whole cell of a node down to `height` \[m\] and lets it spring back where the ground is elastic.
     pub fn stamp(&mut self, node: usize, height: f64) {
-        let levels = self.levels[node];
-        let whole = levels.overlaps(0.0, 1.0).into_iter().enumerate().filter(|(_, share)| *share > 0.0);
-        self.press(node, whole.map(|(level, share)| Pressed { level, share, height }));
+        let overlaps = self.levels[node].overlaps(0.0, 1.0);
+        let whole = overlaps.into_iter().enumerate().filter(|(_, share)| *share > 0.0);
+        let parts: Vec<Pressed> = whole.map(|(level, share)| Pressed { level, share, height }).collect();
+        self.press(node, &parts);
     }
 
     /// Presses parts of the cell of a node down and lets them spring back where the ground is elastic.
-    pub(crate) fn press(&mut self, node: usize, parts: impl Iterator<Item = Pressed>) {
+    pub(crate) fn press(&mut self, node: usize, parts: &[Pressed]) {
+        if let Some(after) = self.pressed(node, parts) {
+            self.set_pressed(node, &after);
+        }
+    }
+
+    /// What the cell of a node becomes where it is pressed; nothing where it stays as it is.
+    pub(crate) fn pressed(&self, node: usize, parts: &[Pressed]) -> Option<PressedCell> {
         if self.is_fixed(node) {
-            return;
+            return None;
         }
         let z_0 = self.grid.heights()[node];
         let pressed = |level: &Level, height: f64| {
@@ -241,12 +255,16 @@ impl Terrain {
                 Level { deepest, sinkage: self.left(node, level.sinkage, deepest, sinkage), ..*level }
             })
         };
-        let mut most = self.deepest[node];
-        let parts = parts.inspect(|part| most = most.max(z_0 - part.height));
-        let Some(after) = self.levels[node].after(parts, pressed) else { return };
-        self.levels[node] = after;
-        self.sinkage[node] = after.mean_sinkage();
-        self.deepest[node] = most;
+        let levels = self.levels[node].after(parts, pressed)?;
+        let deepest = parts.iter().fold(self.deepest[node], |most, part| most.max(z_0 - part.height));
+        Some(PressedCell { levels, deepest })
+    }
+
+    /// Makes the cell of a node what it becomes where it is pressed.
+    pub(crate) fn set_pressed(&mut self, node: usize, after: &PressedCell) {
+        self.levels[node] = after.levels;
+        self.sinkage[node] = after.levels.mean_sinkage();
+        self.deepest[node] = after.deepest;
         self.loadings[node] += 1;
     }
 
@@ -297,7 +315,7 @@ mod tests {
         let node = 5 * 11 + 5;
         let press = |terrain: &mut Terrain, parts: [(usize, f64, f64); 2]| {
             let parts = parts.map(|(level, share, height)| Pressed { level, share, height });
-            terrain.press(node, parts.into_iter());
+            terrain.press(node, &parts);
         };
         press(&mut terrain, [(0, 0.3, -0.10), (0, 0.5, -0.04)]);
         // Half of what was left goes down as well, and the deepest level farther: of four levels two are joined.

@@ -19,6 +19,8 @@ pub struct Frozen {
     pub poses: Vec<Pose>,
     /// Imprint of each foot.
     pub imprints: Vec<FootImprint>,
+    /// Loads of all feet there.
+    pub loads: Vec<FootLoad>,
     integration: Integration,
 }
 
@@ -46,17 +48,16 @@ impl Frozen {
                 }
             }
         }
-        let imprints = on_all_feet(machine.feet.len(), |foot| {
+        // Every search begins where the imprints are drawn: one piece of work for each foot.
+        let drawn = on_all_feet(machine.feet.len(), |foot| {
             let (gear, shapes) = (&machine.feet[foot], at.tracks.get(machine.slack_belts(foot)));
-            gear.imprint_with(
-                terrain,
-                &poses[gear.body],
-                travel,
-                integration.partial,
-                shapes.unwrap_or_default(),
-            )
+            let (pose, shapes) = (&poses[gear.body], shapes.unwrap_or_default());
+            let imprint = gear.imprint_with(terrain, pose, travel, integration.partial, shapes);
+            let load = imprint.load(terrain, &motion(pose, pose), &integration, |_| ());
+            (imprint, load)
         });
-        Ok(Self { at: at.clone(), poses, imprints, integration })
+        let (imprints, loads) = drawn.into_iter().unzip();
+        Ok(Self { at: at.clone(), poses, imprints, loads, integration })
     }
 
     /// Load of one foot after its body moved to `pose`.
@@ -72,19 +73,13 @@ impl Frozen {
         self.imprints[foot].load(terrain, &moved, &self.integration, listen)
     }
 
-    /// Loads of all feet where the imprints were drawn; every loaded polygon is shown to `listen` with its foot.
-    pub fn loads(
-        &self,
-        machine: &Machine,
-        terrain: &Terrain,
-        mut listen: impl FnMut(usize, &LoadedPolygon),
-    ) -> Vec<FootLoad> {
-        (0..machine.feet.len())
-            .map(|foot| {
-                let body = machine.feet[foot].body;
-                self.foot_load(foot, machine, terrain, &self.poses[body], |polygon| listen(foot, polygon))
-            })
-            .collect()
+    /// Loaded polygons of each foot where the imprints were drawn.
+    pub fn polygons(&self, machine: &Machine, terrain: &Terrain) -> Vec<Vec<LoadedPolygon>> {
+        on_all_feet(machine.feet.len(), |foot| {
+            let (pose, mut polygons) = (&self.poses[machine.feet[foot].body], Vec::new());
+            self.foot_load(foot, machine, terrain, pose, |polygon| polygons.push(*polygon));
+            polygons
+        })
     }
 
     /// A loose balance without drawing again, in which the ground carries a little less than the machine's weight (P2 §2.4); also
@@ -119,21 +114,33 @@ impl Frozen {
     /// G2: leaves the footprints of all feet after the bodies moved to a configuration nearby, one foot after the other.
     pub fn stamp(&self, machine: &Machine, terrain: &mut Terrain, to: &Configuration) {
         let poses = machine.mechanism.poses(to);
-        let prints = on_all_feet(self.imprints.len(), |foot| {
+        self.stamp_after(terrain, |foot| {
             let body = machine.feet[foot].body;
-            self.imprints[foot].print(terrain, &motion(&self.poses[body], &poses[body]))
+            motion(&self.poses[body], &poses[body])
         });
+    }
+
+    /// The same where the imprints were drawn.
+    pub fn stamp_here(&self, terrain: &mut Terrain) {
+        self.stamp_after(terrain, |_| Pose::identity());
+    }
+
+    fn stamp_after(&self, terrain: &mut Terrain, motion: impl Fn(usize) -> Pose + Sync) {
+        let prints =
+            on_all_feet(self.imprints.len(), |foot| self.imprints[foot].print(terrain, &motion(foot)));
         prints.iter().for_each(|print| print.leave(terrain));
     }
 
     /// Names a sinkage beyond the data and forces that are not numbers.
     pub(super) fn check(&self, machine: &Machine, terrain: &Terrain) -> Result<(), NoEquilibrium> {
         let max_sinkage = terrain.field().max_sinkage();
-        for (foot, load) in self.loads(machine, terrain, |_, _| ()).iter().enumerate() {
+        let deepest = on_all_feet(machine.feet.len(), |foot| {
+            self.imprints[foot].deepest(terrain, self.integration.partial)
+        });
+        for (foot, (load, sinkage)) in self.loads.iter().zip(deepest).enumerate() {
             if !load.wrench.force.iter().all(|f| f.is_finite()) {
                 return Err(NoEquilibrium::NonFiniteForce { foot });
             }
-            let sinkage = self.imprints[foot].deepest(terrain, self.integration.partial);
             if sinkage > max_sinkage + 1e-9 {
                 return Err(NoEquilibrium::TooDeep { foot, sinkage, max_sinkage });
             }
@@ -169,9 +176,15 @@ impl Frozen {
                 stiffness[(row, column)] -= (own[row] - forces[row]) / step;
             }
         }
-        let loads = on_all_feet(machine.feet.len(), |foot| {
-            self.foot_load(foot, machine, terrain, &poses[machine.feet[foot].body], |_| ())
-        });
+        let moved;
+        let loads = if q == mechanism.dofs(&self.at) {
+            &self.loads
+        } else {
+            moved = on_all_feet(machine.feet.len(), |foot| {
+                self.foot_load(foot, machine, terrain, &poses[machine.feet[foot].body], |_| ())
+            });
+            &moved
+        };
         for (foot, load) in loads.iter().enumerate() {
             let o = self.imprints[foot].reference;
             let mut t = Matrix6xX::zeros(n);
@@ -192,9 +205,10 @@ impl Frozen {
     }
 }
 
-/// What `work` gives for each foot. Feet come in pairs, left and right, and differ along the machine: with two threads each takes a side.
+/// What `work` gives for each foot. Feet come in pairs, left and right, and differ along the machine: with two threads each takes a side. The
+/// last pair comes first: mostly it carries tracks and costs most, and what comes last should be little.
 fn on_all_feet<T: Send>(n: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    let by_side: Vec<usize> = (0..n).step_by(2).chain((1..n).step_by(2)).collect();
+    let by_side: Vec<usize> = (0..n).step_by(2).rev().chain((1..n).step_by(2).rev()).collect();
     let done: Vec<T> = by_side.par_iter().map(|&foot| work(foot)).collect();
     let mut feet: Vec<(usize, T)> = by_side.into_iter().zip(done).collect();
     feet.sort_by_key(|&(foot, _)| foot);

@@ -101,6 +101,9 @@ pub(super) fn solve(
 /// Share of the weight that the ground carries less than the machine weighs after a loose search.
 const LIFT: f64 = 1e-3;
 
+/// Share of the tolerance of a loose search below which the ground's force after a step of Newton's method is not verified.
+const UNVERIFIED: f64 = 0.5;
+
 /// A balance near enough to leave a footprint, lifted until the ground carries less than the weight; and the evaluations spent.
 pub(super) fn settle_and_lift(
     frozen: &Frozen,
@@ -130,6 +133,9 @@ pub(super) fn settle_and_lift(
         for k in 0..q.len() {
             let [low, high] = mechanism.limits(k);
             q[k] = (q[k] + d[k]).clamp(low, high);
+        }
+        if step <= UNVERIFIED * tolerance {
+            return (q, n_evaluations);
         }
     }
     // Not near enough: the careful search, then straight up.

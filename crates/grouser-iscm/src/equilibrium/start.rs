@@ -19,7 +19,7 @@ pub fn start_position(
     let lift = |height: f64, at: &mut Configuration| -> Result<f64, NoEquilibrium> {
         at.height = height;
         let frozen = Frozen::new(machine, terrain, at, travel, integration.clone())?;
-        let carried: f64 = frozen.loads(machine, terrain, |_, _| ()).iter().map(|l| l.wrench.force.z).sum();
+        let carried: f64 = frozen.loads.iter().map(|l| l.wrench.force.z).sum();
         Ok(carried - weight)
     };
     // High enough that nothing touches, low enough that everything is buried.

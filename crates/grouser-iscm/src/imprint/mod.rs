@@ -211,13 +211,18 @@ impl Imprint {
 
     /// Which nodes have a neighbour that the gear covers, or are covered themselves.
     fn is_near_gear(&self) -> Vec<bool> {
-        let mut is_near = vec![false; self.nodes.len()];
-        let covered = (0..self.nodes.len()).filter(|&n| self.nodes[n].coverage > 0.0);
-        for (i, j) in covered.map(|n| (n % self.n_x, n / self.n_x)) {
-            for row in j.saturating_sub(1)..(j + 2).min(self.n_y) {
-                let first = row * self.n_x;
-                is_near[first + i.saturating_sub(1)..first + (i + 2).min(self.n_x)].fill(true);
+        let covered: Vec<bool> = self.nodes.iter().map(|node| node.coverage > 0.0).collect();
+        let mut in_row = covered.clone();
+        for (row, covered) in in_row.chunks_mut(self.n_x.max(1)).zip(covered.chunks(self.n_x.max(1))) {
+            for i in 1..row.len() {
+                row[i] |= covered[i - 1];
+                row[i - 1] |= covered[i];
             }
+        }
+        let mut is_near = in_row.clone();
+        for n in self.n_x..is_near.len() {
+            is_near[n] |= in_row[n - self.n_x];
+            is_near[n - self.n_x] |= in_row[n];
         }
         is_near
     }

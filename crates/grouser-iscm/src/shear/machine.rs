@@ -54,8 +54,7 @@ pub fn machine_traction(
     let frozen = &rest.frozen;
     let forward = frozen.poses[0].rotation * Vec3::x();
     let motion = Motion { forward, slip, slip_angle: 0.0 };
-    let mut polygons = vec![Vec::new(); machine.feet.len()];
-    let loads = frozen.loads(machine, terrain, |foot, polygon| polygons[foot].push(*polygon));
+    let (loads, polygons) = (&frozen.loads, frozen.polygons(machine, terrain));
     let feet: Vec<Traction> = machine
         .feet
         .iter()

@@ -141,9 +141,8 @@ impl DrawnTrack {
         let n_layers = imprint.layers.len();
         for footing in imprint.footings.iter().filter(|footing| footing.layer + 1 < n_layers) {
             let cell = imprint.layers[footing.layer].spacing.powi(2);
-            for site in
-                footing.sites.iter().filter(|site| site.share > 0.0 && self.owners.contains(&site.owner))
-            {
+            let sites = (0..footing.sites.len()).map(|n| footing.sites.get(n));
+            for site in sites.filter(|site| site.share > 0.0 && self.owners.contains(&site.owner)) {
                 if site.position[2] > site.ground + WITHIN_REACH {
                     continue;
                 }

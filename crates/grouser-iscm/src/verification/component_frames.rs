@@ -184,7 +184,7 @@ pub fn intermediate_step() -> Vec<Row> {
         let frozen = Frozen::new(&machine, &terrain, &ahead, 0.003, settings.integration())?;
         let (loose, _) = frozen.settle_and_lift(&machine, &terrain, 1e-4);
         let again = Frozen::new(&machine, &terrain, &loose, 0.003, settings.integration())?;
-        let carried: f64 = again.loads(&machine, &terrain, |_, _| ()).iter().map(|l| l.wrench.force.z).sum();
+        let carried: f64 = again.loads.iter().map(|l| l.wrench.force.z).sum();
         Ok((exact.configuration, loose, carried))
     });
     let Ok((exact, loose, carried)) = solved else {

@@ -77,7 +77,7 @@ pub fn off_centre_load() -> Vec<Row> {
         }];
     };
     // Moments about the roll axis: the ground under leaning wheels pushes sideways too, which no degree of freedom balances.
-    let loads = rest.frozen.loads(&machine, &terrain, |_, _| ());
+    let loads = rest.frozen.loads;
     let centre = machine.mechanism.centre_of_mass(&rest.frozen.poses);
     let axis = rest.frozen.poses[0].translation.vector;
     let total: f64 = loads.iter().map(|l| l.wrench.force.z).sum();
