@@ -1,4 +1,4 @@
-//! Rotation of rigid bodies, written once for one grain and for four at a time: the same operations in the same order.
+//! Rotation of rigid bodies, written once for one grain and for four or eight at a time: the same operations in the same order.
 //!
 //! ```text
 //!   m′ = m + Δt m̄ × ω̄,  m̄ = (m + m′)/2 = J ω̄       implicit midpoint rule in the body frame, m = J ω

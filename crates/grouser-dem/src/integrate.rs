@@ -254,6 +254,7 @@ impl<T: Real> Motion<T> {
                     &mut *(&raw mut **accelerations as *mut [[Vector<<Q as Precision>::Real>; 2]]),
                     orientations.as_deref_mut().unwrap_or_default(),
                     &mut *(&raw mut watch).cast(),
+                    set,
                 );
             }
         })

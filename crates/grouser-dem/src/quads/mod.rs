@@ -7,10 +7,11 @@
 
 mod advance;
 mod eight;
-mod four;
 mod memory;
+mod mover;
 mod octet;
 mod quad;
+mod several;
 mod turn;
 
 pub(crate) use advance::advance;
