@@ -52,7 +52,7 @@ pub(crate) struct Footing {
 struct Parts {
     /// Share of each cell and height of the level there \[m\].
     cells: Vec<(f64, f64)>,
-    /// [`NEAR`] where it is, and [`FIXED`].
+    /// [`NEAR`] where the ground is.
     flags: Vec<u8>,
     /// First and last row with gear near the ground.
     rows: [usize; 2],

@@ -92,7 +92,9 @@ pub fn rigid_objects() -> Vec<Row> {
     let case = "P2 test 18: rigid objects";
     let mut rows = Vec::new();
     for (track, name) in [(None, "wheels"), (Some(10.0), "track")] {
-        for (shape, object, order) in [(RigidShape::Stump, "stump", 1.0), (RigidShape::Rock, "rock", 2.0)] {
+        // The outline of a flat top lies on points of the grid, half a cell inside on the average: 7 % of its area.
+        let stump = (RigidShape::Stump, "stump", 1.0, 5e-5);
+        for (shape, object, order, tolerance) in [stump, (RigidShape::Rock, "rock", 2.0, 2e-4)] {
             let machine = bogie(4_000.0, track);
             let over = format!("{name} over a {object}");
             let Some(fine) = drive(&machine, shape, 0.0125) else {
@@ -122,10 +124,9 @@ pub fn rigid_objects() -> Vec<Row> {
             // The stiff span see-saws on the object and nothing else carries it at the end.
             let reference = depth_under(GRAVITY * machine.mechanism.mass(), shape);
             let source = "volume in the span, that of the weight";
-            rows.push(row("depth in the span", fine.depth, reference, 2e-4, "m", source));
+            rows.push(row("depth in the span", fine.depth, reference, tolerance, "m", source));
             let coarse = drive(&machine, shape, 0.025).map_or(f64::NAN, |coarse| coarse.depth);
             let observed = ((coarse - reference) / (fine.depth - reference)).abs().log2();
-            // The outline of a flat top lies on points of the grid.
             let between = format!("of the depth, {over}, 2.5 to 1.25 cm");
             rows.push(Row::order_at_least(case, &between, observed, order, source));
         }
