@@ -1,6 +1,6 @@
 //! Many polygons worked on together, number by number: F3 to F5 of `docs/theory/iscm.md`.
 //!
-//! Sums over polygons go by lanes of eight, whatever the instruction set, so that each gives the same bits.
+//! Sums over polygons are added up lane by lane, whatever the instruction set, so that each gives the same bits.
 
 use grouser_geometry::Vec3;
 use nalgebra::Matrix6;
@@ -11,7 +11,7 @@ use crate::response::KINKS;
 
 /// Polygons of a batch.
 pub(crate) const LANES: usize = 32;
-/// Partial sums that are carried side by side.
+/// Polygons whose sums over centres are held at a time.
 const WIDTH: usize = 8;
 
 /// One number of each polygon.
@@ -25,6 +25,8 @@ pub(crate) struct Batch {
     n_kinks: usize,
     is_curved: bool,
     has_lines: bool,
+    /// Whether contact builds up in any of them.
+    is_shallow: bool,
     z: [Lane; 3],
     share: [Lane; 3],
     depth: [Lane; 3],
@@ -46,7 +48,19 @@ pub(crate) struct Batch {
     moment: [Lane; 3],
     /// What they come to, see [`Collected`].
     collected: Collected,
+    /// What all batches came to since it was given away.
+    sums: Sums,
 }
+
+/// Sums over batches, polygon by polygon.
+struct Sums {
+    /// Force and moment.
+    forces: [Lane; 6],
+    /// Columns of the stiffness, down to the diagonal.
+    stiffness: [[Lane; 6]; 6],
+}
+
+const NO_SUMS: Sums = Sums { forces: [ZERO; 6], stiffness: [[ZERO; 6]; 6] };
 
 /// Force and stiffness of each polygon.
 struct Collected {
@@ -77,6 +91,7 @@ impl Batch {
             n_kinks: 0,
             is_curved: false,
             has_lines: false,
+            is_shallow: false,
             z: [ZERO; 3],
             share: [ZERO; 3],
             depth: [ZERO; 3],
@@ -97,6 +112,7 @@ impl Batch {
                 stiffness: ZERO,
                 counted: ZERO,
             },
+            sums: NO_SUMS,
         }
     }
 
@@ -124,6 +140,7 @@ impl Batch {
         if let Answer::OnLines { lines, contact } = answer {
             self.per_contact[n] = 1.0 / contact.max(1e-300);
             self.has_lines = true;
+            self.is_shallow |= corners.depth[0] < f64::INFINITY;
             self.is_curved |= !corners.sag.is_none();
             for k in 0..3 {
                 self.z[k][n] = corners.z[k];
@@ -141,113 +158,124 @@ impl Batch {
         }
     }
 
-    /// F3 to F5 over ground of `spacing` \[m\], with the widest vectors of the machine: adds force and moment, and the upper half of the
-    /// stiffness. Nothing is fused, so that each instruction set gives the same bits.
-    pub fn answer(
-        &mut self,
-        sub: &SubTriangles,
-        spacing: f64,
-        wrench: &mut Wrench,
-        stiffness: &mut Matrix6<f64>,
-    ) {
+    /// F3 to F5 over ground of `spacing` \[m\], with the widest vectors of the machine; sums grow until [`Batch::give`]. Nothing is fused, so
+    /// that each instruction set gives the same bits.
+    pub fn answer(&mut self, sub: &SubTriangles, spacing: f64) {
         #[cfg(target_arch = "x86_64")]
         {
             // SAFETY: the instructions were just found on this machine.
             if has_avx512() {
-                return unsafe { self.answer_avx512(sub, spacing, wrench, stiffness) };
+                return unsafe { self.answer_avx512(sub, spacing) };
             }
             // SAFETY: as above.
             if is_x86_feature_detected!("avx2") {
-                return unsafe { self.answer_avx2(sub, spacing, wrench, stiffness) };
+                return unsafe { self.answer_avx2(sub, spacing) };
             }
         }
-        self.answer_portable(sub, spacing, wrench, stiffness);
+        self.answer_portable(sub, spacing);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
-    fn answer_avx512(
-        &mut self,
-        sub: &SubTriangles,
-        spacing: f64,
-        wrench: &mut Wrench,
-        stiffness: &mut Matrix6<f64>,
-    ) {
-        self.answer_portable(sub, spacing, wrench, stiffness);
+    fn answer_avx512(&mut self, sub: &SubTriangles, spacing: f64) {
+        self.answer_portable(sub, spacing);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn answer_avx2(
-        &mut self,
-        sub: &SubTriangles,
-        spacing: f64,
-        wrench: &mut Wrench,
-        stiffness: &mut Matrix6<f64>,
-    ) {
-        self.answer_portable(sub, spacing, wrench, stiffness);
+    fn answer_avx2(&mut self, sub: &SubTriangles, spacing: f64) {
+        self.answer_portable(sub, spacing);
     }
 
     /// Compiled for what every machine has, and into the above for what theirs have.
     #[inline(always)]
-    fn answer_portable(
-        &mut self,
-        sub: &SubTriangles,
-        spacing: f64,
-        wrench: &mut Wrench,
-        stiffness: &mut Matrix6<f64>,
-    ) {
-        self.integrate(sub);
+    fn answer_portable(&mut self, sub: &SubTriangles, spacing: f64) {
+        match (self.has_lines, self.is_shallow) {
+            (false, _) => (),
+            (true, false) => self.integrate::<true>(sub),
+            (true, true) => self.integrate::<false>(sub),
+        }
         self.collect(spacing);
-        self.add_to(wrench, stiffness);
+        self.add_up();
     }
 
-    /// F3, F4: means over the polygons.
+    /// F3, F4: means over the polygons; eight at a time, whose sums stay in registers.
     #[inline(always)]
-    fn integrate(&mut self, sub: &SubTriangles) {
-        if !self.has_lines {
-            return;
+    fn integrate<const IS_DEEP: bool>(&mut self, sub: &SubTriangles) {
+        for first in (0..self.len).step_by(WIDTH) {
+            if self.is_curved {
+                self.integrate_from::<IS_DEEP, true>(sub, first);
+            } else {
+                self.integrate_from::<IS_DEEP, false>(sub, first);
+            }
         }
+    }
+
+    #[inline(always)]
+    fn integrate_from<const IS_DEEP: bool, const IS_CURVED: bool>(
+        &mut self,
+        sub: &SubTriangles,
+        first: usize,
+    ) {
+        let eight =
+            |lane: &Lane| -> [f64; WIDTH] { lane[first..first + WIDTH].try_into().unwrap_or_default() };
+        let of = |lanes: &[Lane; 3]| [eight(&lanes[0]), eight(&lanes[1]), eight(&lanes[2])];
+        let (z_of, share_of, depth_of, sag_of) =
+            (of(&self.z), of(&self.share), of(&self.depth), of(&self.sag));
+        let (line, on_lines, per_contact) =
+            ([eight(&self.line[0]), eight(&self.line[1])], eight(&self.on_lines), eight(&self.per_contact));
+        let (mut pressure, mut stiffness, mut moment) =
+            (eight(&self.pressure), eight(&self.stiffness), of(&self.moment));
         let per_centre = 1.0 / sub.centres().len() as f64;
+        const ZERO: [f64; WIDTH] = [0.0; WIDTH];
         let (mut z, mut g, mut p, mut slope) = (ZERO, ZERO, ZERO, ZERO);
         for &[b_0, b_1, b_2] in sub.centres() {
-            for n in 0..LANES {
-                z[n] = b_0 * self.z[0][n] + b_1 * self.z[1][n] + b_2 * self.z[2][n];
-                g[n] = b_0 * self.depth[0][n] + b_1 * self.depth[1][n] + b_2 * self.depth[2][n];
-            }
-            if self.is_curved {
-                let (s_0, s_1, s_2) = (b_0 * b_1, b_1 * b_2, b_2 * b_0);
-                for n in 0..LANES {
-                    let below = s_0 * self.sag[0][n] + s_1 * self.sag[1][n] + s_2 * self.sag[2][n];
-                    z[n] += below;
-                    g[n] += below;
+            let (s_0, s_1, s_2) = (b_0 * b_1, b_1 * b_2, b_2 * b_0);
+            for n in 0..WIDTH {
+                z[n] = b_0 * z_of[0][n] + b_1 * z_of[1][n] + b_2 * z_of[2][n];
+                if !IS_DEEP {
+                    g[n] = b_0 * depth_of[0][n] + b_1 * depth_of[1][n] + b_2 * depth_of[2][n];
                 }
-            }
-            for n in 0..LANES {
-                p[n] = self.line[0][n] + self.line[1][n] * z[n];
-                slope[n] = self.line[1][n];
+                if IS_CURVED {
+                    let below = s_0 * sag_of[0][n] + s_1 * sag_of[1][n] + s_2 * sag_of[2][n];
+                    z[n] += below;
+                    g[n] += if IS_DEEP { 0.0 } else { below };
+                }
+                p[n] = line[0][n] + line[1][n] * z[n];
+                slope[n] = line[1][n];
             }
             for [at, bend] in &self.kinks[..self.n_kinks] {
-                for n in 0..LANES {
+                let (at, bend) = (&at[first..first + WIDTH], &bend[first..first + WIDTH]);
+                for n in 0..WIDTH {
                     let beyond = z[n] - at[n];
                     p[n] += bend[n] * if beyond > 0.0 { beyond } else { 0.0 };
                     slope[n] += if beyond > 0.0 { bend[n] } else { 0.0 };
                 }
             }
-            for n in 0..LANES {
-                let l_c = b_0 * self.share[0][n] + b_1 * self.share[1][n] + b_2 * self.share[2][n];
-                let share = l_c * self.on_lines[n] * per_centre;
-                let built_up = g[n] * self.per_contact[n];
-                let positive = if built_up > 0.0 { built_up } else { 0.0 };
-                let rising = if built_up > 0.0 && built_up < 1.0 { share * self.per_contact[n] } else { 0.0 };
-                let multiplier = share * if positive < 1.0 { positive } else { 1.0 };
+            for n in 0..WIDTH {
+                let l_c = b_0 * share_of[0][n] + b_1 * share_of[1][n] + b_2 * share_of[2][n];
+                let share = l_c * on_lines[n] * per_centre;
+                let (multiplier, rising) = if IS_DEEP {
+                    (share, 0.0)
+                } else {
+                    let built_up = g[n] * per_contact[n];
+                    let positive = if built_up > 0.0 { built_up } else { 0.0 };
+                    let rises = built_up > 0.0 && built_up < 1.0;
+                    let rising = if rises { share * per_contact[n] } else { 0.0 };
+                    (share * if positive < 1.0 { positive } else { 1.0 }, rising)
+                };
                 let f = p[n] * multiplier;
-                self.pressure[n] += f;
-                self.moment[0][n] += f * b_0;
-                self.moment[1][n] += f * b_1;
-                self.moment[2][n] += f * b_2;
-                self.stiffness[n] += slope[n] * multiplier + p[n] * rising;
+                pressure[n] += f;
+                moment[0][n] += f * b_0;
+                moment[1][n] += f * b_1;
+                moment[2][n] += f * b_2;
+                stiffness[n] += slope[n] * multiplier + if IS_DEEP { 0.0 } else { p[n] * rising };
             }
+        }
+        self.pressure[first..first + WIDTH].copy_from_slice(&pressure);
+        self.stiffness[first..first + WIDTH].copy_from_slice(&stiffness);
+        for (lane, moment) in self.moment.iter_mut().zip(&moment) {
+            lane[first..first + WIDTH].copy_from_slice(moment);
         }
     }
 
@@ -309,23 +337,31 @@ impl Batch {
         })
     }
 
-    /// Adds force, moment and the upper half of the stiffness.
+    /// Adds what the polygons come to.
     #[inline(always)]
-    fn add_to(&mut self, wrench: &mut Wrench, total: &mut Matrix6<f64>) {
+    fn add_up(&mut self) {
         let Collected { normal, lift, counted, .. } = &self.collected;
-        for axis in 0..3 {
-            wrench.force[axis] += sum_of_products(&normal[axis], lift);
-            wrench.moment[axis] += sum_of_products(&normal[axis + 3], lift);
+        let Sums { forces, stiffness } = &mut self.sums;
+        for (sum, normal) in forces.iter_mut().zip(normal) {
+            add_products(sum, normal, lift);
         }
         let mut scaled = ZERO;
-        for column in 0..6 {
+        for (column, sums) in stiffness.iter_mut().enumerate() {
             for n in 0..LANES {
                 scaled[n] = counted[n] * normal[column][n];
             }
-            for row in 0..=column {
-                total[(row, column)] += sum_of_products(&normal[row], &scaled);
+            for (sum, normal) in sums[..=column].iter_mut().zip(normal) {
+                add_products(sum, normal, &scaled);
             }
         }
+    }
+
+    /// Gives the sums away: force and moment, and the upper half of the stiffness.
+    pub fn give(&mut self) -> (Wrench, Matrix6<f64>) {
+        let Sums { forces, stiffness } = std::mem::replace(&mut self.sums, NO_SUMS);
+        let [f_x, f_y, f_z, m_x, m_y, m_z] = forces.map(|sums| sums.iter().sum());
+        let wrench = Wrench { force: Vec3::new(f_x, f_y, f_z), moment: Vec3::new(m_x, m_y, m_z) };
+        (wrench, Matrix6::from_fn(|row, column| stiffness[column][row].iter().sum()))
     }
 
     /// Empties the batch.
@@ -333,7 +369,8 @@ impl Batch {
         for kink in &mut self.kinks[..self.n_kinks] {
             kink[1] = ZERO;
         }
-        (self.len, self.n_kinks, self.is_curved, self.has_lines) = (0, 0, false, false);
+        (self.len, self.n_kinks) = (0, 0);
+        (self.is_curved, self.has_lines, self.is_shallow) = (false, false, false);
         self.on_lines = ZERO;
     }
 }
@@ -346,16 +383,12 @@ fn has_avx512() -> bool {
         && is_x86_feature_detected!("avx512vl")
 }
 
-/// Σ a b in a fixed order.
+/// Adds the products of `a` and `b`.
 #[inline(always)]
-fn sum_of_products(a: &Lane, b: &Lane) -> f64 {
-    let mut sums = [0.0; WIDTH];
-    for (a, b) in a.chunks_exact(WIDTH).zip(b.chunks_exact(WIDTH)) {
-        for n in 0..WIDTH {
-            sums[n] += a[n] * b[n];
-        }
+fn add_products(sums: &mut Lane, a: &Lane, b: &Lane) {
+    for n in 0..LANES {
+        sums[n] += a[n] * b[n];
     }
-    ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]))
 }
 
 #[cfg(test)]

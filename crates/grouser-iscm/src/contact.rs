@@ -6,9 +6,9 @@ use grouser_geometry::{Pose, Vec3};
 use nalgebra::{Matrix3, Matrix6};
 
 use crate::batch::{Batch, LANES};
-use crate::footing::{Facet, Facets, Footing, Sites};
+use crate::footing::{Facets, Footing, OnLevels, Pressing, Sites, Standing};
 use crate::imprint::{Imprint, MOST_SAG};
-use crate::levels::Pressed;
+use crate::levels::{MOST_LEVELS, Pressed};
 use crate::polygon::{Answer, Corners, PartialLoad, Sag, SubTriangles, integrate};
 use crate::response::{
     KINKS, Kink, NO_KINKS, OneArray, Prepared, PreparedArray, Reloaded, Response, Stiff, ThreeArrays,
@@ -50,7 +50,7 @@ pub struct FootLoad {
     pub stiffness: Matrix6<f64>,
 }
 
-/// A loaded polygon, as handed to a listener.
+/// A loaded polygon.
 #[derive(Clone, Copy, Debug)]
 pub struct LoadedPolygon {
     /// Imprint that loads it, counted from the lowest.
@@ -80,7 +80,7 @@ pub struct FootImprint {
     pub reference: Vec3,
     /// Slack tracks: their shoes give way to the ground.
     pub tracks: Vec<DrawnTrack>,
-    /// What of each imprint can press, by level of the ground.
+    /// What of each imprint can press.
     pub(crate) footings: Vec<Footing>,
     /// The lines of the relationship where it is the same everywhere.
     prepared: Option<Prepared>,
@@ -93,22 +93,33 @@ struct Nodes {
     z: Vec<f64>,
     /// Height of the ground then \[m\].
     height: Vec<f64>,
-    /// Share of the cell that the gear covers.
-    share: Vec<f64>,
-    /// Depth of the gear below the present ground \[m\], before it sees its neighbours.
-    depth: Vec<f64>,
+    /// Depth of the gear below each level of the present ground \[m\], before it sees its neighbours.
+    depths: [Vec<f64>; MOST_LEVELS],
     /// How far the gear has sunk since it was drawn, at most \[m\].
     sunk: f64,
+    /// For P2's step, which points are loaded.
+    is_loaded: Vec<f64>,
     /// Working space.
     seen: Vec<f64>,
 }
 
 impl Nodes {
-    /// Corners of a triangle between three `sites`.
+    /// Corners of a triangle between three `sites` of a footing where it presses on `levels`: on one, or deep in all of them.
     #[inline(always)]
-    fn corners(&self, sites: [usize; 3], sag: Sag) -> Corners {
-        let of = |lane: &[f64]| sites.map(|site| lane[site]);
-        Corners { z: of(&self.z), share: of(&self.share), depth: of(&self.depth), sag }
+    fn corners(&self, footing: &Footing, sites: [usize; 3], levels: u8, is_deep: bool, sag: Sag) -> Corners {
+        let z = sites.map(|site| self.z[site]);
+        let (mut share, mut depth) = ([0.0; 3], [f64::INFINITY; 3]);
+        let mut left = levels;
+        while left != 0 {
+            let level = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let of = if self.is_loaded.is_empty() { &footing.levels[level].share } else { &self.is_loaded };
+            (0..3).for_each(|k| share[k] += of[sites[k]]);
+            if !is_deep {
+                depth = sites.map(|site| self.depths[level][site]);
+            }
+        }
+        Corners { z, share, depth, sag }
     }
 }
 
@@ -129,35 +140,49 @@ impl FootImprint {
 
     /// Force of the `terrain` on the gear after it moved by `motion` since the imprints were drawn.
     ///
-    /// `motion` is small: undersides follow it in first order, h + d_z − ∂h/∂x d_x − ∂h/∂y d_y. Every loaded polygon is shown to `listen`.
-    pub fn load(
+    /// `motion` is small: undersides follow it in first order, h + d_z − ∂h/∂x d_x − ∂h/∂y d_y.
+    pub fn load(&self, terrain: &Terrain, motion: &Pose, integration: &Integration) -> FootLoad {
+        self.load_and_show(terrain, motion, integration, None)
+    }
+
+    /// The loaded polygons behind [`FootImprint::load`].
+    pub fn polygons(
         &self,
         terrain: &Terrain,
         motion: &Pose,
         integration: &Integration,
-        mut listen: impl FnMut(&LoadedPolygon),
+    ) -> Vec<LoadedPolygon> {
+        let mut polygons = Vec::new();
+        self.load_and_show(terrain, motion, integration, Some(&mut polygons));
+        polygons
+    }
+
+    fn load_and_show(
+        &self,
+        terrain: &Terrain,
+        motion: &Pose,
+        integration: &Integration,
+        mut polygons: Option<&mut Vec<LoadedPolygon>>,
     ) -> FootLoad {
         let followed = self.followed(terrain, motion);
-        let mut load = FootLoad { wrench: Wrench::default(), stiffness: followed.stiffness };
         let ground = Ground::new(terrain, self.prepared.as_ref());
-        let (mut nodes, mut found, mut batch) = (Nodes::default(), Vec::new(), Batch::new());
+        let (mut nodes, mut found, mut batch) = (Nodes::default(), Pressing::default(), Batch::new());
         for footing in &self.footings {
             self.stand(footing, motion, &followed, integration.partial, &mut nodes);
-            let Nodes { sunk, depth, seen, .. } = &mut nodes;
-            let facets = footing.facets(&self.layers, integration.partial, *sunk, depth, seen);
-            facets.pressing(&nodes.depth, &mut found);
-            let pressed = (facets, &found[..]);
-            self.load_footing(
-                footing,
-                pressed,
-                &nodes,
-                &ground,
-                integration,
-                &mut batch,
-                &mut load,
-                &mut listen,
-            );
+            let ready = footing.ready(&self.layers, integration.partial, nodes.sunk);
+            for (edges, depths) in ready.edges.iter().zip(&mut nodes.depths) {
+                edges.see(depths, &mut nodes.seen);
+            }
+            let facets = &ready.facets;
+            let depths = &nodes.depths[..footing.levels.len()];
+            facets.pressing(depths, ground.deep(integration.partial), &mut found);
+            for (pressed, is_deep) in [(&found.deep, true), (&found.partly, false)] {
+                let of = Triangles { footing, facets, pressed, is_deep };
+                self.load_triangles(&of, &nodes, &ground, integration, &mut batch, &mut polygons);
+            }
         }
+        let (wrench, stiffness) = batch.give();
+        let mut load = FootLoad { wrench, stiffness: followed.stiffness + stiffness };
         load.stiffness.fill_lower_triangle_with_upper_triangle();
         load
     }
@@ -174,11 +199,14 @@ impl FootImprint {
         let mut nodes = Nodes::default();
         for footing in &self.footings {
             self.stand(footing, motion, &followed, PartialLoad::Proportional, &mut nodes);
-            let Sites { share, ground, on_grid, .. } = &footing.sites;
-            parts.reserve(on_grid.len());
-            for n in (0..footing.sites.len()).filter(|&n| share[n] > 0.0) {
-                let pressed = Pressed { level: footing.level, share: share[n], height: nodes.height[n] };
-                parts.push((on_grid[n] as usize, pressed, nodes.height[n] < ground[n]));
+            parts.reserve(footing.sites.len());
+            for (n, (&node, &height)) in footing.sites.on_grid.iter().zip(&nodes.height).enumerate() {
+                for (level, standing) in footing.levels.iter().enumerate() {
+                    if standing.share[n] > 0.0 {
+                        let pressed = Pressed { level, share: standing.share[n], height };
+                        parts.push((node as usize, pressed, height < standing.ground[n]));
+                    }
+                }
             }
         }
         parts.sort_by_key(|(node, ..)| *node);
@@ -211,8 +239,7 @@ impl FootImprint {
     ) {
         let turn: Matrix3<f64> = motion.rotation.to_rotation_matrix().matrix() - Matrix3::identity();
         let shift = motion.translation.vector;
-        let Sites { position: [x, y, z], slope: [slope_x, slope_y], share, ground, undisturbed, .. } =
-            &footing.sites;
+        let Sites { position: [x, y, z], slope: [slope_x, slope_y], undisturbed, .. } = &footing.sites;
         let n = footing.sites.len();
         // First the rise of each point, then its height.
         nodes.height.clear();
@@ -228,10 +255,9 @@ impl FootImprint {
         }
         if !followed.shifts.is_empty() && footing.layer + 1 < self.layers.len() {
             for n in 0..n {
-                let site = footing.sites.get(n);
-                if let Some(shift) = followed.shift(site.owner) {
-                    let d = shift.at(site.position.into());
-                    nodes.height[n] += d.z - site.slope[0] * d.x - site.slope[1] * d.y;
+                if let Some(shift) = followed.shift(footing.sites.owner[n]) {
+                    let d = shift.at(footing.sites.position(n).into());
+                    nodes.height[n] += d.z - slope_x[n] * d.x - slope_y[n] * d.y;
                 }
             }
         }
@@ -239,19 +265,19 @@ impl FootImprint {
             sunk = if z - height > sunk { z - height } else { sunk };
         }
         nodes.sunk = sunk;
-        nodes.share.clear();
-        nodes.share.extend(share);
-        if partial == PartialLoad::Step {
-            // As printed: a point is loaded and follows the gear, or is not and stays.
+        nodes.is_loaded.clear();
+        if let (PartialLoad::Step, Some(Standing { share, ground, .. })) = (partial, footing.levels.first()) {
+            // As printed: a point is loaded and follows the gear, or is not and stays; a cell is covered whole or not, so it is level.
             for n in 0..n {
-                nodes.share[n] = if nodes.height[n] < ground[n] { share[n].round() } else { 0.0 };
+                nodes.is_loaded.push(if nodes.height[n] < ground[n] { share[n].round() } else { 0.0 });
                 nodes.height[n] = nodes.height[n].min(ground[n]);
             }
         }
         nodes.z.clear();
         nodes.z.extend(undisturbed.iter().zip(&nodes.height).map(|(z_0, height)| z_0 - height));
-        nodes.depth.clear();
-        nodes.depth.extend(ground.iter().zip(&nodes.height).map(|(ground, height)| ground - height));
+        for (standing, depths) in footing.levels.iter().zip(&mut nodes.depths) {
+            standing.depths(&nodes.height, depths);
+        }
     }
 
     /// Deepest sinkage of soil under the gear where it was drawn \[m\].
@@ -261,38 +287,38 @@ impl FootImprint {
         self.footings.iter().fold(0.0, |deepest, footing| {
             self.stand(footing, &Pose::identity(), &followed, partial, &mut nodes);
             let sag = MOST_SAG * self.layers[footing.layer].spacing;
-            let Sites { ground, on_grid, .. } = &footing.sites;
-            let is_soil = |&n: &usize| {
-                nodes.share[n] > 0.0
-                    && nodes.height[n] < ground[n] + sag
-                    && !terrain.is_fixed(on_grid[n] as usize)
+            let on_grid = &footing.sites.on_grid;
+            let presses = |n: usize| {
+                let on = |standing: &Standing| {
+                    standing.share[n] > 0.0 && nodes.height[n] < standing.ground[n] + sag
+                };
+                footing.levels.iter().any(on)
             };
+            let is_soil = |&n: &usize| presses(n) && !terrain.is_fixed(on_grid[n] as usize);
             (0..footing.sites.len()).filter(is_soil).fold(deepest, |deepest, n| nodes.z[n].max(deepest))
         })
     }
 
-    /// F3 to F5: integrates over the polygons of a footing that were `found` to press.
-    fn load_footing(
+    /// F3 to F5: integrates over triangles that press.
+    fn load_triangles(
         &self,
-        footing: &Footing,
-        (facets, found): (&Facets, &[u32]),
+        of: &Triangles,
         nodes: &Nodes,
         ground: &Ground,
         integration: &Integration,
         batch: &mut Batch,
-        load: &mut FootLoad,
-        listen: &mut impl FnMut(&LoadedPolygon),
+        polygons: &mut Option<&mut Vec<LoadedPolygon>>,
     ) {
-        let layer = footing.layer;
+        let Triangles { footing, facets, is_deep, .. } = *of;
         // Slack tracks have answered for theirs.
-        let may_follow = layer + 1 < self.layers.len() && !self.tracks.is_empty();
+        let may_follow = footing.layer + 1 < self.layers.len() && !self.tracks.is_empty();
         let mut kinks = NO_KINKS;
         let [x, y] = [&footing.sites.position[0], &footing.sites.position[1]];
-        for pressed in found.chunks(LANES) {
-            for &n in pressed {
+        for pressed in of.pressed.chunks(LANES) {
+            for &OnLevels { facet: n, levels } in pressed {
                 let facet = &facets.facets[n as usize];
                 let sites = facet.sites.map(|site| site as usize);
-                let corners = nodes.corners(sites, facets.sag(n as usize));
+                let corners = nodes.corners(footing, sites, levels, is_deep, facets.sag(n as usize));
                 let on_grid = || sites.map(|site| footing.sites.on_grid[site] as usize);
                 let answer = ground.answer(facet.is_fixed, on_grid, &corners, integration, &mut kinks);
                 let point = |site: usize| {
@@ -302,30 +328,33 @@ impl FootImprint {
                 let follows = may_follow && self.tracks.iter().any(|track| track.owns(facet.owner));
                 batch.push(&sites.map(point), &corners, &answer, !follows);
             }
-            let pressed = pressed.iter().map(|&n| &facets.facets[n as usize]);
-            self.collect(layer, nodes, integration, batch, pressed, load, listen);
+            let spacing = self.layers[footing.layer].spacing;
+            batch.answer(&integration.sub_triangles, spacing);
+            if let Some(polygons) = polygons {
+                self.show(of, pressed, nodes, batch, polygons);
+            }
+            batch.clear();
         }
     }
 
-    /// F4, F5: force, position and stiffness of a batch of `pressed` polygons; empties the batch.
-    #[inline(always)]
-    fn collect<'a>(
+    /// Adds the polygons of a batch.
+    fn show(
         &self,
-        layer: usize,
+        &Triangles { footing, facets, is_deep, .. }: &Triangles,
+        pressed: &[OnLevels],
         nodes: &Nodes,
-        integration: &Integration,
-        batch: &mut Batch,
-        pressed: impl Iterator<Item = &'a Facet>,
-        load: &mut FootLoad,
-        listen: &mut impl FnMut(&LoadedPolygon),
+        batch: &Batch,
+        polygons: &mut Vec<LoadedPolygon>,
     ) {
-        let spacing = self.layers[layer].spacing;
-        batch.answer(&integration.sub_triangles, spacing, &mut load.wrench, &mut load.stiffness);
-        for (n, facet) in pressed.enumerate() {
+        let spacing = self.layers[footing.layer].spacing;
+        for (n, &OnLevels { facet, levels }) in pressed.iter().enumerate() {
             let Some(polygon) = batch.loaded(n) else { continue };
-            let share = facet.sites.iter().map(|&site| nodes.share[site as usize]).sum::<f64>() / 3.0;
-            listen(&LoadedPolygon {
-                layer,
+            let facet = &facets.facets[facet as usize];
+            let sites = facet.sites.map(|site| site as usize);
+            let corners = nodes.corners(footing, sites, levels, is_deep, Sag::default());
+            let share = corners.share.iter().sum::<f64>() / 3.0;
+            polygons.push(LoadedPolygon {
+                layer: footing.layer,
                 owner: facet.owner,
                 force: polygon.normal * polygon.lift,
                 position: self.reference + polygon.arm,
@@ -335,8 +364,16 @@ impl FootImprint {
                 stiffness: polygon.stiffness,
             });
         }
-        batch.clear();
     }
+}
+
+/// Triangles of a footing that press, alike.
+struct Triangles<'a> {
+    footing: &'a Footing,
+    facets: &'a Facets,
+    pressed: &'a [OnLevels],
+    /// Whether they are deeper at all corners than contact builds up.
+    is_deep: bool,
 }
 
 /// What gear presses, cell by cell in the order of the nodes.
@@ -380,6 +417,15 @@ struct Ground<'a> {
 impl<'a> Ground<'a> {
     fn new(terrain: &'a Terrain, prepared: Option<&'a Prepared>) -> Self {
         Self { terrain, per_resolution: 1.0 / terrain.field().resolution(), prepared }
+    }
+
+    /// Depth \[m\] beyond which it no longer matters how deep in its ground gear lies, but for its sinkage.
+    fn deep(&self, partial: PartialLoad) -> f64 {
+        match self.terrain.unloading() {
+            _ if partial == PartialLoad::Step => f64::INFINITY,
+            Unloading::Plastic { contact_distance } => contact_distance,
+            Unloading::Elastic { .. } => f64::INFINITY,
+        }
     }
 
     /// F3, F4: the ground's answer under one polygon with its corners at nodes `on_grid`, all on rigid objects or not. `kinks` is working

@@ -1,71 +1,69 @@
 //! What of an imprint can press on the ground: its points and triangles, found once a drawing.
 
 mod facets;
+mod standing;
 #[cfg(test)]
 mod tests;
 
 use std::sync::OnceLock;
 
-pub(crate) use facets::{Facet, Facets, Sites};
+pub(crate) use facets::{Facets, OnLevels, Pressing, Sites};
+pub(crate) use standing::{Edges, Standing};
 
-use facets::owner;
+use facets::{Facet, owner};
 
-use crate::imprint::{ACROSS, AROUND, HARDLY_COVERED, Imprint, MOST_SAG};
+use crate::imprint::{Imprint, MOST_SAG};
 use crate::levels::MOST_LEVELS;
 use crate::polygon::{PartialLoad, Sag};
 use crate::terrain::Terrain;
 
-/// A point hardly covered, of whose depth `own` counts, and the neighbours that give the rest: a range of `Footing::seen`.
-#[derive(Clone, Debug)]
-struct Edge {
-    site: u32,
-    own: f64,
-    seen: std::ops::Range<u32>,
-}
-
-/// Points and triangles under one layer of running gear, as far as it stands on one level of the ground in each cell.
+/// Points and triangles under one layer of running gear.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Footing {
     /// The layer, counted from the lowest.
     pub layer: usize,
-    /// The level, counted from the deepest.
-    pub level: usize,
     /// The points.
     pub sites: Sites,
-    /// The triangles that press once the gear has sunk by less than [`CLOSE`] since it was drawn.
-    close: Facets,
-    /// All triangles of which a part is covered, made when the gear sinks farther.
-    all: OnceLock<Facets>,
+    /// What stands on each level of the ground, the deepest first.
+    pub levels: Vec<Standing>,
+    /// What presses once the gear has sunk by less than [`CLOSE`] since it was drawn.
+    close: Ready,
+    /// All of which a part is covered, made when the gear sinks farther.
+    all: OnceLock<Ready>,
     /// First row of the window that has triangles; for each node from there on the point there, and what is known of it.
     first_row: usize,
     site_of: Vec<u32>,
-    flags: Vec<u8>,
-    /// Those of corners of triangles that are close come first.
-    edges: Vec<Edge>,
-    n_close_edges: usize,
-    /// Points and their weights, which add up to one for each edge.
-    seen: Vec<(u32, f64)>,
+    flags: Vec<u16>,
+    /// The node of each point, counted from that row.
+    nodes: Vec<u32>,
 }
 
-/// What a layer covers of one level of its cells.
+/// Triangles that may press, and for each level the points hardly covered at their corners.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Ready {
+    pub facets: Facets,
+    pub edges: Vec<Edges>,
+}
+
+/// What a layer covers of each level of its cells.
 #[derive(Clone, Debug, Default)]
 struct Parts {
-    /// Share of each cell and height of the level there \[m\].
-    cells: Vec<(f64, f64)>,
+    /// Share of each cell and height of the level there \[m\]; empty for a level on which nothing stands.
+    cells: [Vec<(f64, f64)>; MOST_LEVELS],
     /// [`NEAR`] where the ground is.
-    flags: Vec<u8>,
+    flags: Vec<u16>,
     /// First and last row with gear near the ground.
     rows: [usize; 2],
 }
 
-/// Whether the ground may come to press at a node before the next drawing.
-const NEAR: u8 = 1;
-/// Whether it does once the gear has sunk by [`CLOSE`].
-const IS_CLOSE: u8 = 2;
+/// One bit for each level: whether the ground may come to press at a node before the next drawing.
+const NEAR: u16 = (1 << MOST_LEVELS) - 1;
+/// Where the bits begin that tell whether it does once the gear has sunk by [`CLOSE`].
+const IS_CLOSE: usize = MOST_LEVELS;
+/// Where the bits begin that tell whether the node is the corner of a triangle.
+const CORNER: usize = 2 * MOST_LEVELS;
 /// Whether the node belongs to a rigid object.
-const FIXED: u8 = 4;
-/// Whether it is the corner of a triangle.
-const CORNER: u8 = 8;
+const FIXED: u16 = 1 << (3 * MOST_LEVELS);
 const NONE: u32 = u32::MAX;
 
 /// Sinkage since the drawing up to which only triangles close to the ground are looked at \[m\]; changes cost, not results.
@@ -76,67 +74,33 @@ pub(crate) const WITHIN_REACH: f64 = 0.12;
 impl Footing {
     /// Of all `layers`, the lowest first, on the levels of `terrain`; what lower layers cover is gone for higher ones.
     pub fn of(layers: &[Imprint], terrain: &Terrain, partial: PartialLoad) -> Vec<Self> {
-        let mut footings = Vec::with_capacity(2 * layers.len());
-        let mut parts: [Parts; MOST_LEVELS] = Default::default();
-        let heights = terrain.grid().heights();
-        for (k, layer) in layers.iter().enumerate() {
-            for parts in &mut parts {
-                parts.cells.clear();
-                parts.flags.clear();
-                parts.rows = [usize::MAX, 0];
+        let mut parts = Parts::default();
+        let mut footings = Vec::with_capacity(layers.len());
+        for k in 0..layers.len() {
+            parts.find(layers, k, terrain);
+            if parts.rows[0] <= parts.rows[1] {
+                footings.push(Self::new(layers, k, &parts, terrain, partial));
             }
-            for j in 0..layer.n_y {
-                let first = (layer.j_0 + j) * terrain.grid().n_x() + layer.i_0;
-                let row = &layer.nodes[j * layer.n_x..(j + 1) * layer.n_x];
-                for (i, node) in row.iter().enumerate().filter(|(_, node)| node.coverage > 0.0) {
-                    let [low, high] = match k {
-                        0 => [0.0, node.coverage],
-                        _ => covered(layers, k, layer.i_0 + i, layer.j_0 + j),
-                    };
-                    let levels = terrain.levels(first + i);
-                    let overlaps = levels.overlaps(low, high);
-                    for level in (0..MOST_LEVELS).filter(|&level| overlaps[level] > 0.0) {
-                        let Parts { cells, flags, rows } = &mut parts[level];
-                        if cells.is_empty() {
-                            cells.resize(layer.nodes.len(), (0.0, 0.0));
-                            flags.resize(layer.nodes.len(), 0);
-                        }
-                        let ground = heights[first + i] - levels.get(level).sinkage;
-                        if node.height < ground + WITHIN_REACH {
-                            *rows = [rows[0].min(j), j];
-                            flags[j * layer.n_x + i] = NEAR;
-                        }
-                        cells[j * layer.n_x + i] = (overlaps[level], ground);
-                    }
-                }
-            }
-            let near = parts.iter().enumerate().filter(|(_, parts)| parts.rows[0] <= parts.rows[1]);
-            footings.extend(near.map(|(level, parts)| Self::new(layers, k, level, parts, terrain, partial)));
         }
         footings
     }
 
-    /// Of layer `k` of `layers` on one level, of which it covers `parts`.
-    fn new(
-        layers: &[Imprint],
-        k: usize,
-        level: usize,
-        parts: &Parts,
-        terrain: &Terrain,
-        partial: PartialLoad,
-    ) -> Self {
+    /// Of layer `k` of `layers`, which covers `parts`.
+    fn new(layers: &[Imprint], k: usize, parts: &Parts, terrain: &Terrain, partial: PartialLoad) -> Self {
         let imprint = &layers[k];
         let n_x = imprint.n_x;
         let first_row = parts.rows[0].saturating_sub(1);
         let window = first_row * n_x..((parts.rows[1] + 1).min(imprint.n_y - 1) + 1) * n_x;
         let flags = parts.flags[window.clone()].to_vec();
-        let mut footing = Self { layer: k, level, first_row, flags, ..Self::default() };
+        let mut footing = Self { layer: k, first_row, flags, ..Self::default() };
         footing.find_corners(imprint);
-        let shares = footing.find_sites(imprint, &parts.cells[window], terrain);
-        if partial == PartialLoad::Proportional {
-            footing.see_neighbours(n_x, &shares);
+        footing.find_sites(imprint, terrain);
+        let n_levels = parts.cells.iter().rposition(|cells| !cells.is_empty()).map_or(0, |last| last + 1);
+        for (level, cells) in parts.cells[..n_levels].iter().enumerate() {
+            let cells = cells.get(window.clone()).unwrap_or_default();
+            footing.levels.push(footing.standing(level, cells, terrain));
         }
-        footing.find_close(layers, partial);
+        footing.close = footing.find_close(layers, partial);
         footing
     }
 
@@ -154,7 +118,7 @@ impl Footing {
                 let mut is_corner = [0; 4];
                 for half in halves(imprint, (i, self.first_row + j)) {
                     let any = half.iter().fold(0, |any, &corner| any | near[corner]);
-                    half.iter().for_each(|&corner| is_corner[corner] |= any * CORNER);
+                    half.iter().for_each(|&corner| is_corner[corner] |= any << CORNER);
                 }
                 low[i] |= is_corner[0];
                 low[i + 1] |= is_corner[1];
@@ -164,30 +128,24 @@ impl Footing {
         }
     }
 
-    /// Makes the points at the marked corners, row by row; returns the share of each node of the window that is one.
-    fn find_sites(&mut self, imprint: &Imprint, cells: &[(f64, f64)], terrain: &Terrain) -> Vec<f64> {
+    /// Makes the points at the marked corners, row by row.
+    fn find_sites(&mut self, imprint: &Imprint, terrain: &Terrain) {
         let n_x = imprint.n_x;
-        let is_corner = |n: &usize| self.flags[*n] & CORNER != 0;
-        let nodes: Vec<usize> = (0..cells.len()).filter(is_corner).collect();
-        self.site_of = vec![NONE; cells.len()];
-        let mut shares = vec![0.0; cells.len()];
+        let is_corner = |n: &u32| self.flags[*n as usize] & (NEAR << CORNER) != 0;
+        let nodes: Vec<u32> = (0..self.flags.len() as u32).filter(is_corner).collect();
+        self.site_of = vec![NONE; self.flags.len()];
         let first = (imprint.j_0 + self.first_row) * terrain.grid().n_x() + imprint.i_0;
         let mut on_grid = Vec::with_capacity(nodes.len());
         let mut at: Vec<[f64; 2]> = Vec::with_capacity(nodes.len());
         for (site, &n) in nodes.iter().enumerate() {
-            let (i, j) = (n % n_x, n / n_x);
+            let (i, j) = (n as usize % n_x, n as usize / n_x);
             let node = first + j * terrain.grid().n_x() + i;
-            self.site_of[n] = site as u32;
-            shares[n] = cells[n].0;
-            self.flags[n] |= if terrain.is_fixed(node) { FIXED } else { 0 };
+            self.site_of[n as usize] = site as u32;
+            self.flags[n as usize] |= if terrain.is_fixed(node) { FIXED } else { 0 };
             on_grid.push(node as u32);
             at.push(imprint.position(i, self.first_row + j));
         }
-        let gear = || nodes.iter().map(|&n| &imprint.nodes[self.first_row * n_x + n]);
-        let ground = nodes.iter().zip(&on_grid).map(|(&n, &node)| match cells[n] {
-            (share, ground) if share > 0.0 => ground,
-            _ => terrain.level_height(node as usize, self.level),
-        });
+        let gear = || nodes.iter().map(|&n| &imprint.nodes[self.first_row * n_x + n as usize]);
         let heights = terrain.grid().heights();
         self.sites = Sites {
             position: [
@@ -196,87 +154,105 @@ impl Footing {
                 gear().map(|gear| gear.height).collect(),
             ],
             slope: [0, 1].map(|k| gear().map(|gear| gear.slope[k]).collect()),
-            share: nodes.iter().map(|&n| cells[n].0).collect(),
-            ground: ground.collect(),
             undisturbed: on_grid.iter().map(|&node| heights[node as usize]).collect(),
             owner: gear().map(|gear| gear.owner).collect(),
             on_grid,
         };
-        shares
+        self.nodes = nodes;
     }
 
-    /// Finds the triangles that press once the gear has sunk by [`CLOSE`].
-    fn find_close(&mut self, layers: &[Imprint], partial: PartialLoad) {
-        let sites = self.sites.ground.iter().zip(&self.sites.position[2]);
-        let mut depths: Vec<f64> = sites.map(|(ground, height)| ground - height).collect();
-        self.see(self.edges.len(), &mut depths, &mut Vec::new());
+    /// Finds what presses once the gear has sunk by [`CLOSE`].
+    fn find_close(&mut self, layers: &[Imprint], partial: PartialLoad) -> Ready {
+        let n_x = layers[self.layer].n_x;
         // No underside sags more below the corners of a triangle.
         let most = CLOSE + 4.0 / 3.0 * MOST_SAG * layers[self.layer].spacing;
-        for (flags, &site) in self.flags.iter_mut().zip(&self.site_of).filter(|(_, site)| **site != NONE) {
-            *flags |= if depths[site as usize] > -most { IS_CLOSE } else { 0 };
-        }
-        self.close = self.facets_where(layers, partial, IS_CLOSE);
-        let mut is_close = vec![false; self.sites.len()];
-        self.close
-            .facets
-            .iter()
-            .flat_map(|facet| facet.sites)
-            .for_each(|site| is_close[site as usize] = true);
-        for k in 0..self.edges.len() {
-            if is_close[self.edges[k].site as usize] {
-                self.edges.swap(self.n_close_edges, k);
-                self.n_close_edges += 1;
+        let mut depths: [Vec<f64>; MOST_LEVELS] = Default::default();
+        for (level, standing) in self.levels.iter().enumerate() {
+            standing.depths(&self.sites.position[2], &mut depths[level]);
+            for ((&n, &depth), &share) in self.nodes.iter().zip(&depths[level]).zip(&standing.share) {
+                self.flags[n as usize] |= u16::from(depth > -most && share > 0.0) << (IS_CLOSE + level);
             }
         }
+        let mut edges = Vec::with_capacity(self.levels.len());
+        if partial == PartialLoad::Proportional {
+            // What is hardly covered sees none deeper than its neighbours.
+            self.spread_close(n_x);
+            for (level, depths) in depths[..self.levels.len()].iter_mut().enumerate() {
+                let is_close = 1 << (IS_CLOSE + level);
+                edges.push(self.edges(level, is_close, n_x));
+                edges[level].see(depths, &mut Vec::new());
+                for (&n, &depth) in self.nodes.iter().zip(&*depths) {
+                    let is_far = u16::from(depth <= -most) << (IS_CLOSE + level);
+                    self.flags[n as usize] &= !is_far;
+                }
+            }
+        }
+        Ready { facets: self.facets_where(layers, partial, IS_CLOSE), edges }
     }
 
-    /// The triangles that may press once the gear has sunk by `sunk` \[m\] since it was drawn in `layers`, and the depths below the ground
-    /// that their corners see, where `depths` \[m\] holds each point's own; `changed` is working space.
-    pub fn facets(
-        &self,
-        layers: &[Imprint],
-        partial: PartialLoad,
-        sunk: f64,
-        depths: &mut [f64],
-        changed: &mut Vec<f64>,
-    ) -> &Facets {
+    /// Marks the neighbours of what is close as close.
+    fn spread_close(&mut self, n_x: usize) {
+        let close = |flags: u16| flags & (NEAR << IS_CLOSE);
+        for row in self.flags.chunks_mut(n_x) {
+            let mut before = 0;
+            for i in 0..row.len() {
+                let here = close(row[i]);
+                row[i] |= before | row.get(i + 1).map_or(0, |next| close(*next));
+                before = here;
+            }
+        }
+        let in_rows = self.flags.clone();
+        for n in n_x..in_rows.len() {
+            self.flags[n] |= close(in_rows[n - n_x]);
+            self.flags[n - n_x] |= close(in_rows[n]);
+        }
+    }
+
+    /// What may press once the gear has sunk by `sunk` \[m\] since it was drawn in `layers`.
+    pub fn ready(&self, layers: &[Imprint], partial: PartialLoad, sunk: f64) -> &Ready {
         if sunk < CLOSE - 1e-9 {
-            self.see(self.n_close_edges, depths, changed);
             return &self.close;
         }
-        self.see(self.edges.len(), depths, changed);
-        self.all.get_or_init(|| self.facets_where(layers, partial, CORNER))
+        self.all.get_or_init(|| {
+            let n_x = layers[self.layer].n_x;
+            let levels = if partial == PartialLoad::Proportional { self.levels.len() } else { 0 };
+            let edges = (0..levels).map(|level| self.edges(level, 0, n_x));
+            Ready { facets: self.facets_where(layers, partial, CORNER), edges: edges.collect() }
+        })
     }
 
-    /// All triangles with a corner near the ground and one that has a flag.
+    /// All triangles with a corner near the ground and one that has a flag, both on the same level; `flag` is where its bits begin.
     ///
     /// Wheels, the last layer of all, have a curved underside; shoes are flat.
-    fn facets_where(&self, layers: &[Imprint], partial: PartialLoad, flag: u8) -> Facets {
+    fn facets_where(&self, layers: &[Imprint], partial: PartialLoad, flag: usize) -> Facets {
         let (imprint, n_x) = (&layers[self.layer], layers[self.layer].n_x);
         let is_curved = self.layer + 1 == layers.len() && partial == PartialLoad::Proportional;
-        let Sites { owner: owners, share: shares, .. } = &self.sites;
+        let owners = &self.sites.owner;
+        let share = |site: u32| self.levels.iter().map(|level| level.share[site as usize]).sum::<f64>();
         let mut all = Facets::default();
         all.facets.reserve(2 * self.sites.len());
         all.sags.reserve(if is_curved { 2 * self.sites.len() } else { 0 });
-        let wanted = NEAR | flag;
         for j in 0..self.site_of.len() / n_x - 1 {
             let row = self.first_row + j;
             let (low, high) = self.site_of[j * n_x..(j + 2) * n_x].split_at(n_x);
             let (low_flags, high_flags) = self.flags[j * n_x..(j + 2) * n_x].split_at(n_x);
             for i in 0..n_x - 1 {
                 let flags = [low_flags[i], low_flags[i + 1], high_flags[i], high_flags[i + 1]];
-                if (flags[0] | flags[1] | flags[2] | flags[3]) & wanted != wanted {
+                let any = flags[0] | flags[1] | flags[2] | flags[3];
+                if any & (any >> flag) & NEAR == 0 {
                     continue;
                 }
                 let sites = [low[i], low[i + 1], high[i], high[i + 1]];
                 for half in halves(imprint, (i, row)) {
                     let [a, b, c] = half.map(|corner| flags[corner]);
-                    if (a | b | c) & wanted != wanted {
+                    let any = a | b | c;
+                    let levels = (any & (any >> flag) & NEAR) as u8;
+                    if levels == 0 {
                         continue;
                     }
                     let sites = half.map(|corner| sites[corner]);
-                    let owner = owner(sites.map(|site| (owners[site as usize], shares[site as usize])));
-                    all.facets.push(Facet { sites, owner, is_fixed: a & b & c & FIXED != 0 });
+                    let owner = owner(sites, |site| owners[site as usize], share);
+                    all.facets.push(Facet { sites, owner, levels, is_fixed: a & b & c & FIXED != 0 });
                     if is_curved {
                         let at = half.map(|corner| (i + corner % 2, row + corner / 2));
                         all.sags.push(Sag::new(imprint.sag(at)));
@@ -286,54 +262,41 @@ impl Footing {
         }
         all
     }
+}
 
-    /// What is hardly covered takes its depth from its neighbours; `shares` are those of the nodes of the window with points, `n_x` in a row.
-    fn see_neighbours(&mut self, n_x: usize, shares: &[f64]) {
-        let n_rows = shares.len() / n_x;
-        let site_of = &self.site_of;
-        for (n, &site) in site_of.iter().enumerate().filter(|(_, site)| **site != NONE) {
-            let own = shares[n] / HARDLY_COVERED;
-            if own >= 1.0 {
-                continue;
-            }
-            let (i, j) = (n % n_x, n / n_x);
-            let (first, mut sum) = (self.seen.len(), 0.0);
-            self.seen.resize(first + AROUND.len(), (0, 0.0));
-            let (seen, mut n_seen) = (&mut self.seen[first..], 0);
-            let mut see = |near: usize, weight: f64| {
-                let weight = shares[near] * weight;
-                seen[n_seen] = (site_of[near], weight);
-                n_seen += usize::from(weight > 0.0);
-                sum += weight;
-            };
-            let is_inside = i > 0 && j > 0 && i + 1 < n_x && j + 1 < n_rows;
-            for (di, dj) in AROUND {
-                let weight = if di == 0 || dj == 0 { 1.0 } else { ACROSS };
-                let (a, b) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
-                if is_inside || (a < n_x && b < n_rows) {
-                    see(b * n_x + a, weight);
+impl Parts {
+    /// Finds what layer `k` of `layers` covers of the levels of `terrain`.
+    fn find(&mut self, layers: &[Imprint], k: usize, terrain: &Terrain) {
+        let layer = &layers[k];
+        let heights = terrain.grid().heights();
+        self.cells.iter_mut().for_each(Vec::clear);
+        self.flags.clear();
+        self.flags.resize(layer.nodes.len(), 0);
+        self.rows = [usize::MAX, 0];
+        for j in 0..layer.n_y {
+            let first = (layer.j_0 + j) * terrain.grid().n_x() + layer.i_0;
+            let row = &layer.nodes[j * layer.n_x..(j + 1) * layer.n_x];
+            for (i, node) in row.iter().enumerate().filter(|(_, node)| node.coverage > 0.0) {
+                let [low, high] = match k {
+                    0 => [0.0, node.coverage],
+                    _ => covered(layers, k, layer.i_0 + i, layer.j_0 + j),
+                };
+                let levels = terrain.levels(first + i);
+                let overlaps = levels.overlaps(low, high);
+                let n_levels = if levels.is_one() { 1 } else { MOST_LEVELS };
+                for level in (0..n_levels).filter(|&level| overlaps[level] > 0.0) {
+                    let cells = &mut self.cells[level];
+                    if cells.is_empty() {
+                        cells.resize(layer.nodes.len(), (0.0, 0.0));
+                    }
+                    let ground = heights[first + i] - levels.get(level).sinkage;
+                    if node.height < ground + WITHIN_REACH {
+                        self.rows = [self.rows[0].min(j), j];
+                        self.flags[j * layer.n_x + i] |= 1 << level;
+                    }
+                    cells[j * layer.n_x + i] = (overlaps[level], ground);
                 }
             }
-            let last = if sum > 0.0 { first + n_seen } else { first };
-            self.seen.truncate(last);
-            if sum > 0.0 {
-                let rest = (1.0 - own) / sum;
-                self.seen[first..].iter_mut().for_each(|seen| seen.1 *= rest);
-                self.edges.push(Edge { site, own, seen: first as u32..last as u32 });
-            }
-        }
-    }
-
-    /// Changes the depth below the ground \[m\] of the points of the first `n` edges from their own to what they see.
-    fn see(&self, n: usize, depths: &mut [f64], changed: &mut Vec<f64>) {
-        changed.clear();
-        changed.extend(self.edges[..n].iter().map(|edge| {
-            let seen = &self.seen[edge.seen.start as usize..edge.seen.end as usize];
-            let seen = seen.iter().map(|&(site, weight)| weight * depths[site as usize]);
-            edge.own * depths[edge.site as usize] + seen.sum::<f64>()
-        }));
-        for (edge, &depth) in self.edges[..n].iter().zip(&*changed) {
-            depths[edge.site as usize] = depth;
         }
     }
 }

@@ -74,7 +74,7 @@ pub(crate) struct Corners {
     pub z: [f64; 3],
     /// Share of the corner's cell that the gear covers, or 0 and 1 for [`PartialLoad::Step`].
     pub share: [f64; 3],
-    /// Depth of the gear below the present ground \[m\]; negative where it is above.
+    /// Depth of the gear below the present ground \[m\]; negative where it is above, ∞ where it no longer matters.
     pub depth: [f64; 3],
     /// How the underside sags between them.
     pub sag: Sag,
@@ -98,10 +98,10 @@ impl Sag {
         Self { products, range: [0.25 * least, most / 3.0] }
     }
 
-    /// Most that sinkage and depth are larger than those between the corners \[m\].
+    /// Sinkage and depth are larger than those between the corners by at least and at most this \[m\].
     #[inline(always)]
-    pub fn most(&self) -> f64 {
-        self.range[1]
+    pub fn range(&self) -> [f64; 2] {
+        self.range
     }
 
     /// Whether the underside is flat.
@@ -118,7 +118,7 @@ pub(crate) fn largest([a, b, c]: [f64; 3]) -> f64 {
 }
 
 #[inline(always)]
-fn smallest([a, b, c]: [f64; 3]) -> f64 {
+pub(crate) fn smallest([a, b, c]: [f64; 3]) -> f64 {
     let ab = if a < b { a } else { b };
     if ab < c { ab } else { c }
 }

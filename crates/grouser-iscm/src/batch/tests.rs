@@ -31,8 +31,8 @@ fn agree<R: Response>(ground: R, contact: f64) {
                 let answer = integrate(&sub, ground, corners, PartialLoad::Proportional, contact, &mut kinks);
                 batch.push(&[[0.0; 3], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0]], corners, &answer, true);
             }
-            let (mut wrench, mut stiffness) = (Wrench::default(), Matrix6::zeros());
-            batch.answer(&sub, 0.1, &mut wrench, &mut stiffness);
+            batch.answer(&sub, 0.1);
+            let (wrench, _) = batch.give();
             let mut expected = [0.0; 3];
             for (n, corners) in corners.iter().enumerate() {
                 let exact = by_centres(&sub, ground, corners, PartialLoad::Proportional, contact);
@@ -63,7 +63,7 @@ fn many_at_a_time_equal_centre_by_centre() {
 }
 
 /// One of the ways of [`Batch::answer`].
-type Way = fn(&mut Batch, &SubTriangles, f64, &mut Wrench, &mut Matrix6<f64>);
+type Way = fn(&mut Batch, &SubTriangles, f64);
 
 /// The ways that this machine has, by name.
 fn ways() -> Vec<(&'static str, Way)> {
@@ -72,12 +72,10 @@ fn ways() -> Vec<(&'static str, Way)> {
     {
         // SAFETY: in each, the instructions were just found on this machine.
         if is_x86_feature_detected!("avx2") {
-            ways.push(("AVX2", |batch, sub, d, wrench, k| unsafe { batch.answer_avx2(sub, d, wrench, k) }));
+            ways.push(("AVX2", |batch, sub, d| unsafe { batch.answer_avx2(sub, d) }));
         }
         if has_avx512() {
-            ways.push(("AVX-512", |batch, sub, d, wrench, k| unsafe {
-                batch.answer_avx512(sub, d, wrench, k)
-            }));
+            ways.push(("AVX-512", |batch, sub, d| unsafe { batch.answer_avx512(sub, d) }));
         }
     }
     ways.push(("widest", Batch::answer));
@@ -87,18 +85,18 @@ fn ways() -> Vec<(&'static str, Way)> {
 /// Bits of all numbers that a batch of `polygons` answers with, summed and one by one.
 fn bits(way: Way, sub: &SubTriangles, polygons: &[([[f64; 3]; 3], Corners, Answer, bool)]) -> Vec<u64> {
     let (mut batch, mut all) = (Batch::new(), Vec::new());
-    let (mut wrench, mut stiffness) = (Wrench::default(), Matrix6::zeros());
     for batch_of in polygons.chunks(LANES) {
         for (points, corners, answer, counts) in batch_of {
             batch.push(points, corners, answer, *counts);
         }
-        way(&mut batch, sub, 0.04, &mut wrench, &mut stiffness);
+        way(&mut batch, sub, 0.04);
         for loaded in (0..batch_of.len()).filter_map(|n| batch.loaded(n)) {
             all.extend(loaded.arm.iter().chain(&loaded.normal));
             all.extend([loaded.lift, loaded.pressure, loaded.stiffness]);
         }
         batch.clear();
     }
+    let (wrench, stiffness) = batch.give();
     all.extend(wrench.force.iter().chain(&wrench.moment).chain(&stiffness));
     all.into_iter().map(f64::to_bits).collect()
 }

@@ -53,7 +53,7 @@ impl Frozen {
             let (gear, shapes) = (&machine.feet[foot], at.tracks.get(machine.slack_belts(foot)));
             let (pose, shapes) = (&poses[gear.body], shapes.unwrap_or_default());
             let imprint = gear.imprint_with(terrain, pose, travel, integration.partial, shapes);
-            let load = imprint.load(terrain, &motion(pose, pose), &integration, |_| ());
+            let load = imprint.load(terrain, &motion(pose, pose), &integration);
             (imprint, load)
         });
         let (imprints, loads) = drawn.into_iter().unzip();
@@ -61,24 +61,16 @@ impl Frozen {
     }
 
     /// Load of one foot after its body moved to `pose`.
-    pub fn foot_load(
-        &self,
-        foot: usize,
-        machine: &Machine,
-        terrain: &Terrain,
-        pose: &Pose,
-        listen: impl FnMut(&LoadedPolygon),
-    ) -> FootLoad {
+    pub fn foot_load(&self, foot: usize, machine: &Machine, terrain: &Terrain, pose: &Pose) -> FootLoad {
         let moved = motion(&self.poses[machine.feet[foot].body], pose);
-        self.imprints[foot].load(terrain, &moved, &self.integration, listen)
+        self.imprints[foot].load(terrain, &moved, &self.integration)
     }
 
     /// Loaded polygons of each foot where the imprints were drawn.
     pub fn polygons(&self, machine: &Machine, terrain: &Terrain) -> Vec<Vec<LoadedPolygon>> {
         on_all_feet(machine.feet.len(), |foot| {
-            let (pose, mut polygons) = (&self.poses[machine.feet[foot].body], Vec::new());
-            self.foot_load(foot, machine, terrain, pose, |polygon| polygons.push(*polygon));
-            polygons
+            let pose = &self.poses[machine.feet[foot].body];
+            self.imprints[foot].polygons(terrain, &motion(pose, pose), &self.integration)
         })
     }
 
@@ -181,7 +173,7 @@ impl Frozen {
             &self.loads
         } else {
             moved = on_all_feet(machine.feet.len(), |foot| {
-                self.foot_load(foot, machine, terrain, &poses[machine.feet[foot].body], |_| ())
+                self.foot_load(foot, machine, terrain, &poses[machine.feet[foot].body])
             });
             &moved
         };

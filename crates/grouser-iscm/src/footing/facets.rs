@@ -1,34 +1,19 @@
 //! Points of the ground under running gear and triangles between them.
 
-use crate::polygon::{Sag, largest};
+use crate::polygon::{Sag, largest, smallest};
 
-/// A point of the ground under running gear.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Site {
-    /// Node of the terrain.
-    pub on_grid: usize,
-    /// Place of the underside as drawn \[m\].
-    pub position: [f64; 3],
-    /// Slope of the underside ∂h/∂x, ∂h/∂y \[-\].
-    pub slope: [f64; 2],
-    /// Share of the point's cell in which the gear stands on this level.
-    pub share: f64,
-    /// Height of that level \[m\].
-    pub ground: f64,
-    /// Which object of the gear lies here.
-    pub owner: u16,
-}
-
-/// Points of the ground, number by number: the place of the underside, its slope, and so on as in [`Site`].
+/// Points of the ground under running gear, number by number.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sites {
+    /// Place of the underside as drawn \[m\].
     pub position: [Vec<f64>; 3],
+    /// Slope of the underside ∂h/∂x, ∂h/∂y \[-\].
     pub slope: [Vec<f64>; 2],
-    pub share: Vec<f64>,
-    pub ground: Vec<f64>,
     /// Height of the undisturbed ground \[m\].
     pub undisturbed: Vec<f64>,
+    /// Node of the terrain.
     pub on_grid: Vec<u32>,
+    /// Which object of the gear lies here.
     pub owner: Vec<u16>,
 }
 
@@ -38,17 +23,10 @@ impl Sites {
         self.on_grid.len()
     }
 
-    /// Point `n`.
+    /// Place of the underside of point `n` as drawn \[m\].
     #[inline(always)]
-    pub fn get(&self, n: usize) -> Site {
-        Site {
-            on_grid: self.on_grid[n] as usize,
-            position: [self.position[0][n], self.position[1][n], self.position[2][n]],
-            slope: [self.slope[0][n], self.slope[1][n]],
-            share: self.share[n],
-            ground: self.ground[n],
-            owner: self.owner[n],
-        }
+    pub fn position(&self, n: usize) -> [f64; 3] {
+        [self.position[0][n], self.position[1][n], self.position[2][n]]
     }
 }
 
@@ -59,6 +37,8 @@ pub(crate) struct Facet {
     pub sites: [u32; 3],
     /// Object of the gear with the largest share of its corners.
     pub owner: u16,
+    /// One bit for each level of the ground on which it may press.
+    pub levels: u8,
     /// Whether all corners lie on a rigid object.
     pub is_fixed: bool,
 }
@@ -70,6 +50,25 @@ pub(crate) struct Facets {
     pub sags: Vec<Sag>,
 }
 
+/// A triangle and one bit for each level of the ground on which it presses.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct OnLevels {
+    pub facet: u32,
+    pub levels: u8,
+}
+
+/// Triangles that press.
+#[derive(Debug, Default)]
+pub(crate) struct Pressing {
+    /// Deep in some levels, so that only the sum of what they share counts.
+    pub deep: Vec<OnLevels>,
+    /// Not in all corners below a level, or not deep, for each level.
+    pub partly: Vec<OnLevels>,
+    /// Working space.
+    below: Vec<u8>,
+    beyond: Vec<u8>,
+}
+
 impl Facets {
     /// How the underside of triangle `n` sags.
     #[inline(always)]
@@ -77,36 +76,80 @@ impl Facets {
         self.sags.get(n).copied().unwrap_or_default()
     }
 
-    /// The triangles on which gear presses that lies below the ground by `depths` \[m\] at the points.
+    /// The triangles on which gear presses that lies below each level of the ground by `depths` \[m\] at the points; all of what is deeper
+    /// than `contact` \[m\] is deep.
     #[inline(always)]
-    pub fn pressing(&self, depths: &[f64], found: &mut Vec<u32>) {
-        let deepest = |facet: &Facet| largest(facet.sites.map(|site| depths[site as usize]));
-        found.clear();
-        found.resize(self.facets.len(), 0);
-        let mut n = 0;
-        // Without a branch: which triangles press is not to be foreseen.
+    pub fn pressing(&self, depths: &[Vec<f64>], contact: f64, found: &mut Pressing) {
         if self.sags.is_empty() {
-            for (k, facet) in self.facets.iter().enumerate() {
-                found[n] = k as u32;
-                n += 1 - usize::from(deepest(facet) <= 0.0);
-            }
+            // Which points do can be told beforehand, one bit a level.
+            let Pressing { below, beyond, .. } = found;
+            bits(depths, 0.0, below);
+            bits(depths, contact, beyond);
+            let (below, beyond) = (std::mem::take(below), std::mem::take(beyond));
+            self.find(found, |_, Facet { sites, .. }| {
+                let [a, b, c] = sites.map(|site| below[site as usize]);
+                let [d, e, f] = sites.map(|site| beyond[site as usize]);
+                [a | b | c, d & e & f]
+            });
+            (found.below, found.beyond) = (below, beyond);
         } else {
-            for (k, (facet, sag)) in self.facets.iter().zip(&self.sags).enumerate() {
-                found[n] = k as u32;
-                n += 1 - usize::from(deepest(facet) + sag.most() <= 0.0);
+            self.find(found, |n, Facet { sites, .. }| {
+                let [least, most] = self.sags[n].range();
+                let mut bits = [0, 0];
+                for (level, depths) in depths.iter().enumerate() {
+                    let depths = sites.map(|site| depths[site as usize]);
+                    bits[0] |= u8::from(largest(depths) + most > 0.0) << level;
+                    bits[1] |= u8::from(smallest(depths) + least >= contact) << level;
+                }
+                bits
+            });
+        }
+    }
+
+    /// Finds triangles of which `of` says on which levels they would press and on which they would be deep.
+    #[inline(always)]
+    fn find(&self, Pressing { deep, partly, .. }: &mut Pressing, of: impl Fn(usize, &Facet) -> [u8; 2]) {
+        deep.resize(self.facets.len(), OnLevels::default());
+        partly.clear();
+        let mut n_deep = 0;
+        for (n, facet) in self.facets.iter().enumerate() {
+            let [presses, is_deep] = of(n, facet);
+            let (presses, is_deep) = (presses & facet.levels, presses & is_deep & facet.levels);
+            let facet = n as u32;
+            // Without a branch: which triangles are deep is not to be foreseen.
+            deep[n_deep] = OnLevels { facet, levels: is_deep };
+            n_deep += usize::from(is_deep != 0);
+            let mut left = presses & !is_deep;
+            while left != 0 {
+                partly.push(OnLevels { facet, levels: left & left.wrapping_neg() });
+                left &= left - 1;
             }
         }
-        found.truncate(n);
+        deep.truncate(n_deep);
     }
 }
 
-/// The owner with the largest share of three corners.
+/// One bit for each level of `depths` on which a point is deeper than a `least` depth \[m\], or as deep where that is more than none.
 #[inline(always)]
-pub(super) fn owner(corners: [(u16, f64); 3]) -> u16 {
-    let [a, b, c] = corners.map(|corner| corner.0);
+fn bits(depths: &[Vec<f64>], least: f64, bits: &mut Vec<u8>) {
+    bits.clear();
+    bits.resize(depths.first().map_or(0, Vec::len), 0);
+    for (level, depths) in depths.iter().enumerate() {
+        for (bits, &depth) in bits.iter_mut().zip(depths) {
+            *bits |= u8::from(depth >= least && depth > 0.0) << level;
+        }
+    }
+}
+
+/// The owner of three `sites` that has the largest `share` of them.
+#[inline(always)]
+pub(super) fn owner(sites: [u32; 3], owner_of: impl Fn(u32) -> u16, share: impl Fn(u32) -> f64) -> u16 {
+    let [a, b, c] = sites.map(&owner_of);
     if a == b && a == c {
         return a;
     }
-    let held = |owner: u16| -> f64 { corners.iter().filter(|c| c.0 == owner).map(|c| c.1).sum() };
+    let held = |owner: u16| -> f64 {
+        sites.iter().filter(|site| owner_of(**site) == owner).map(|site| share(*site)).sum()
+    };
     [b, c].into_iter().fold(a, |best, other| if held(other) > held(best) { other } else { best })
 }

@@ -138,11 +138,9 @@ impl Foot {
                 max[k] = max[k].max(p[k]);
             }
         }
-        let probe = Imprint::new(grid, min, max, f64::INFINITY, partial);
-        let rows = (0..probe.n_y).flat_map(|j| (0..probe.n_x).map(move |i| (i, j)));
-        let highest = rows
-            .map(|(i, j)| terrain.height((probe.j_0 + j) * grid.n_x() + probe.i_0 + i))
-            .fold(f64::NEG_INFINITY, f64::max);
+        let [is, js] = Imprint::window(grid, min, max);
+        let nodes = js.flat_map(|j| is.clone().map(move |i| j * grid.n_x() + i));
+        let highest = nodes.map(|node| terrain.height(node)).fold(f64::NEG_INFINITY, f64::max);
         let blank = || Imprint::new(grid, min, max, highest + HEADROOM, partial);
         let mut layers = Vec::with_capacity(3);
         let mut tracks = Vec::new();

@@ -64,15 +64,22 @@ impl Imprint {
     /// An empty imprint over the nodes in and around the box from `min` to `max` \[m\]; undersides above `ceiling` \[m\] are left out.
     pub fn new(grid: &HeightGrid, min: [f64; 2], max: [f64; 2], ceiling: f64, partial: PartialLoad) -> Self {
         let d = grid.spacing();
-        let window = |low: f64, high: f64, origin: f64, n: usize| {
-            let first = (((low - origin) / d).floor() - 1.0).clamp(0.0, n as f64) as usize;
-            let last = (((high - origin) / d).ceil() + 1.0).clamp(-1.0, (n - 1) as f64);
-            (first, (last - first as f64 + 1.0).max(0.0) as usize)
-        };
-        let (i_0, n_x) = window(min[0], max[0], grid.origin()[0], grid.n_x());
-        let (j_0, n_y) = window(min[1], max[1], grid.origin()[1], grid.n_y());
+        let [is, js] = Self::window(grid, min, max);
+        let (i_0, n_x, j_0, n_y) = (is.start, is.len(), js.start, js.len());
         let origin = [grid.origin()[0] + d * i_0 as f64, grid.origin()[1] + d * j_0 as f64];
         Self { i_0, j_0, n_x, n_y, nodes: vec![EMPTY; n_x * n_y], spacing: d, origin, ceiling, partial }
+    }
+
+    /// Columns and rows of the grid in and around the box from `min` to `max` \[m\].
+    pub(crate) fn window(grid: &HeightGrid, min: [f64; 2], max: [f64; 2]) -> [std::ops::Range<usize>; 2] {
+        let d = grid.spacing();
+        let n = [grid.n_x(), grid.n_y()];
+        [0, 1].map(|k| {
+            let (low, high) = ((min[k] - grid.origin()[k]) / d, (max[k] - grid.origin()[k]) / d);
+            let first = (low.floor() - 1.0).clamp(0.0, n[k] as f64) as usize;
+            let end = ((high.ceil() + 1.0).clamp(-1.0, (n[k] - 1) as f64) + 1.0) as usize;
+            first..end.max(first)
+        })
     }
 
     /// Whether the gear covers no node.

@@ -5,7 +5,7 @@ use nalgebra::{Matrix6, Vector6};
 
 use super::{Chain, Lay, Touch, TrackShape};
 use crate::contact::FootImprint;
-use crate::footing::WITHIN_REACH;
+use crate::footing::{Sites, Standing, WITHIN_REACH};
 use crate::gear::{Belt, Wheel};
 use crate::mechanism::GRAVITY;
 use crate::pressure::interpolate;
@@ -141,31 +141,37 @@ impl DrawnTrack {
         let n_layers = imprint.layers.len();
         for footing in imprint.footings.iter().filter(|footing| footing.layer + 1 < n_layers) {
             let cell = imprint.layers[footing.layer].spacing.powi(2);
-            let sites = (0..footing.sites.len()).map(|n| footing.sites.get(n));
-            for site in sites.filter(|site| site.share > 0.0 && self.owners.contains(&site.owner)) {
-                if site.position[2] > site.ground + WITHIN_REACH {
+            let Sites { on_grid, slope, owner, .. } = &footing.sites;
+            let of = |standing: &Standing| {
+                let is_ours = |&n: &usize| standing.share[n] > 0.0 && self.owners.contains(&owner[n]);
+                let points = (0..owner.len()).filter(is_ours);
+                points.map(|n| (n, standing.share[n], standing.ground[n])).collect::<Vec<_>>()
+            };
+            for (n, share, ground) in footing.levels.iter().flat_map(of) {
+                let position = Vec3::from(footing.sites.position(n));
+                if position.z > ground + WITHIN_REACH {
                     continue;
                 }
-                let position = Vec3::from(site.position);
-                let normal = Vec3::new(-site.slope[0], -site.slope[1], 1.0);
+                let slope = [slope[0][n], slope[1][n]];
+                let normal = Vec3::new(-slope[0], -slope[1], 1.0);
                 let arm = (position - imprint.reference).cross(&normal);
-                let link = self.links[(site.owner - self.owners.start) as usize];
-                let share = link.map_or(0.0, |a| {
+                let link = self.links[(owner[n] - self.owners.start) as usize];
+                let along = link.map_or(0.0, |a| {
                     let along = joints[a + 1] - joints[a];
                     (position - joints[a]).dot(&along) / along.norm_squared()
                 });
                 self.touches.push(Touch {
                     link,
-                    share,
+                    share: along,
                     normal: [normal.dot(&self.axes[0]), normal.dot(&self.axes[1])],
                     with_body: Vector6::new(normal.x, normal.y, normal.z, arm.x, arm.y, arm.z),
                 });
                 self.nodes.push(TouchedNode {
-                    on_grid: site.on_grid,
+                    on_grid: on_grid[n] as usize,
                     position,
-                    slope: site.slope,
-                    ground: site.ground,
-                    area: site.share * cell,
+                    slope,
+                    ground,
+                    area: share * cell,
                 });
             }
         }

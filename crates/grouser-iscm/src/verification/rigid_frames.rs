@@ -81,7 +81,7 @@ pub fn torque_of_a_bogie() -> Vec<Row> {
         let terrain = flat_ground(spacing, 5.0);
         let pose = Pose::from_parts(Vec3::new(0.0031, 0.002, height).into(), turn);
         let imprint = foot.imprint(&terrain, &pose, 0.0, settings.partial);
-        imprint.load(&terrain, &Pose::identity(), &settings.integration(), |_| ()).wrench.moment.y
+        imprint.load(&terrain, &Pose::identity(), &settings.integration()).wrench.moment.y
     };
     let (coarse, fine) = (computed(0.02), computed(0.01));
     let order = ((coarse - exact).abs() / (fine - exact).abs()).log2();

@@ -23,8 +23,7 @@ pub fn bogie_rolling_down() -> Vec<Row> {
     let pose = Pose::from_parts(Vec3::new(0.0031, 0.002, 0.36).into(), turn);
     let settings = SearchSettings::default();
     let imprint: FootImprint = foot.imprint(&terrain, &pose, 0.0, settings.partial);
-    let mut polygons = Vec::new();
-    imprint.load(&terrain, &Pose::identity(), &settings.integration(), |p| polygons.push(*p));
+    let polygons = imprint.polygons(&terrain, &Pose::identity(), &settings.integration());
     let rolling = turn * Vec3::x();
     let wheels = foot_resistance(&foot, &pose, 0.0, rolling, &polygons, &imprint);
     let row = |(k, w): (usize, &WheelResistance)| Row {
@@ -127,8 +126,7 @@ pub fn bogie_with_a_track() -> Vec<Row> {
         let machine = super::bogie(4_000.0, Some(mass));
         let foot = &machine.feet[0];
         let imprint = foot.imprint(&terrain, &pose, 0.0, settings.partial);
-        let mut polygons = Vec::new();
-        imprint.load(&terrain, &Pose::identity(), &settings.integration(), |p| polygons.push(*p));
+        let polygons = imprint.polygons(&terrain, &Pose::identity(), &settings.integration());
         let wheels = foot_resistance(foot, &pose, 0.0, rolling, &polygons, &imprint);
         let exact = tracked_reference(angle, height, width, stiffness, mass);
         for (k, wheel) in wheels.iter().enumerate() {

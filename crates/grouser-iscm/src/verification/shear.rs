@@ -184,8 +184,7 @@ pub fn driven_track() -> Vec<Row> {
         let turn = grouser_geometry::Orientation::from_axis_angle(&Vec3::z_axis(), heading);
         let pose = Pose::from_parts(Vec3::new(0.0031, 0.0021, 0.47).into(), turn);
         let imprint = foot.imprint(&terrain, &pose, 0.0, settings.partial);
-        let mut polygons = Vec::new();
-        imprint.load(&terrain, &Pose::identity(), &settings.integration(), |p| polygons.push(*p));
+        let polygons = imprint.polygons(&terrain, &Pose::identity(), &settings.integration());
         let forward = turn * Vec3::x();
         let motion = Motion { forward, slip: 0.1, slip_angle: 0.0 };
         let traction = foot_traction(&imprint, &terrain, &polygons, &law, motion, 0.1);

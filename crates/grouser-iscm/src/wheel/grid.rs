@@ -126,8 +126,7 @@ impl<'a> Bench<'a> {
         let slip = self.wheel.acting_slip(self.slip);
         let motion = Motion { forward: Vec3::x(), slip, slip_angle: self.slip_angle };
         let path = ShearPath { imprint: &imprint, terrain: &ground, motion, gap: 0.0 };
-        let mut polygons: Vec<LoadedPolygon> = Vec::new();
-        imprint.load(&ground, &Pose::identity(), &self.integration, |polygon| polygons.push(*polygon));
+        let mut polygons = imprint.polygons(&ground, &Pose::identity(), &self.integration);
 
         let travel = motion.travel();
         let (mut normal, mut shear) = (Vec3::zeros(), Vec3::zeros());

@@ -24,7 +24,7 @@ fn lift(terrain: Terrain, level: f64) -> f64 {
     let pose = Pose::translation(0.0, 0.0, level + 0.25);
     let imprint = foot.imprint(&terrain, &pose, 0.0, PartialLoad::Proportional);
     let integration = Integration { sub_triangles: SubTriangles::new(4), partial: PartialLoad::Proportional };
-    imprint.load(&terrain, &Pose::identity(), &integration, |_| ()).wrench.force.z
+    imprint.load(&terrain, &Pose::identity(), &integration).wrench.force.z
 }
 
 fn grid(height: impl FnMut(f64, f64) -> f64) -> HeightGrid {

@@ -127,7 +127,7 @@ fn stiffness_of_a_slack_foot_is_the_derivative_of_its_force() {
     let (_, terrain, _, imprint) = over_a_rut();
     let integration = SearchSettings::default().integration();
     let lifted = |height: f64| {
-        let load = imprint.load(&terrain, &Pose::translation(0.0, 0.0, height), &integration, |_| ());
+        let load = imprint.load(&terrain, &Pose::translation(0.0, 0.0, height), &integration);
         (load.wrench.force.z, load.stiffness[(2, 2)])
     };
     let step = 2e-4;
@@ -141,8 +141,8 @@ fn stiffness_of_a_slack_foot_is_the_derivative_of_its_force() {
 fn wheels_receive_what_the_ground_gives_less_the_weight_of_the_track() {
     let (machine, terrain, pose, imprint) = over_a_rut();
     let integration = SearchSettings::default().integration();
-    let mut polygons = Vec::new();
-    let load = imprint.load(&terrain, &Pose::identity(), &integration, |polygon| polygons.push(*polygon));
+    let load = imprint.load(&terrain, &Pose::identity(), &integration);
+    let polygons = imprint.polygons(&terrain, &Pose::identity(), &integration);
     let wheels =
         foot_resistance(&machine.feet[0], &pose, 0.013, pose.rotation * Vec3::x(), &polygons, &imprint);
     let received = WheelResistance::total(&wheels).vertical_force;

@@ -1,0 +1,119 @@
+//! Running gear on one level of the ground.
+
+use super::{CORNER, Footing};
+use crate::imprint::{ACROSS, AROUND, HARDLY_COVERED};
+use crate::terrain::Terrain;
+
+/// A point hardly covered, of whose depth `own` counts, and the neighbours that give the rest: a range of `Edges::seen`.
+#[derive(Clone, Debug)]
+struct Edge {
+    site: u32,
+    own: f64,
+    seen: std::ops::Range<u32>,
+}
+
+/// What of a layer stands on one level of the ground, point by point.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Standing {
+    /// Share of the point's cell in which it does.
+    pub share: Vec<f64>,
+    /// Height of the level \[m\]; −∞ where no triangle is near it.
+    pub ground: Vec<f64>,
+}
+
+/// Points hardly covered.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Edges {
+    edges: Vec<Edge>,
+    /// Points and their weights, which with the edge's own add up to one.
+    seen: Vec<(u32, f64)>,
+}
+
+impl Footing {
+    /// What stands on a `level`: the share of each cell of the window and the height there \[m\].
+    pub(super) fn standing(&self, level: usize, cells: &[(f64, f64)], terrain: &Terrain) -> Standing {
+        let corner = 1 << (CORNER + level);
+        let n = self.nodes.len();
+        let mut standing = Standing { share: Vec::with_capacity(n), ground: Vec::with_capacity(n) };
+        for (&n, &on_grid) in self.nodes.iter().zip(&self.sites.on_grid) {
+            let (share, ground) = match cells.get(n as usize) {
+                Some(&cell) if self.flags[n as usize] & corner != 0 => match cell {
+                    (share, ground) if share > 0.0 => (share, ground),
+                    _ => (0.0, terrain.level_height(on_grid as usize, level)),
+                },
+                _ => (0.0, f64::NEG_INFINITY),
+            };
+            standing.share.push(share);
+            standing.ground.push(ground);
+        }
+        standing
+    }
+
+    /// The corners of triangles on a `level` that have a `flag` and are hardly covered, which take their depth from their neighbours; rows of
+    /// the window have `n_x` nodes.
+    pub(super) fn edges(&self, level: usize, flag: u16, n_x: usize) -> Edges {
+        let flag = flag | 1 << (CORNER + level);
+        let (site_of, share) = (&self.site_of, &self.levels[level].share);
+        let n_rows = site_of.len() / n_x;
+        let mut edges = Edges::default();
+        edges.seen.reserve(4 * self.nodes.len());
+        for (site, &n) in self.nodes.iter().enumerate() {
+            let (n, own) = (n as usize, share[site] / HARDLY_COVERED);
+            if self.flags[n] & flag != flag || own >= 1.0 {
+                continue;
+            }
+            let (i, j) = (n % n_x, n / n_x);
+            let (first, mut sum) = (edges.seen.len(), 0.0);
+            edges.seen.resize(first + AROUND.len(), (0, 0.0));
+            let (seen, mut n_seen) = (&mut edges.seen[first..], 0);
+            let mut see = |near: usize, weight: f64| {
+                let near = site_of[near];
+                let weight = share.get(near as usize).map_or(0.0, |share| share * weight);
+                seen[n_seen] = (near, weight);
+                n_seen += usize::from(weight > 0.0);
+                sum += weight;
+            };
+            let is_inside = i > 0 && j > 0 && i + 1 < n_x && j + 1 < n_rows;
+            for (di, dj) in AROUND {
+                let weight = if di == 0 || dj == 0 { 1.0 } else { ACROSS };
+                let (a, b) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
+                if is_inside || (a < n_x && b < n_rows) {
+                    see(b * n_x + a, weight);
+                }
+            }
+            let last = if sum > 0.0 { first + n_seen } else { first };
+            edges.seen.truncate(last);
+            if sum > 0.0 {
+                let rest = (1.0 - own) / sum;
+                edges.seen[first..].iter_mut().for_each(|seen| seen.1 *= rest);
+                edges.edges.push(Edge { site: site as u32, own, seen: first as u32..last as u32 });
+            }
+        }
+        edges
+    }
+}
+
+impl Standing {
+    /// Depth below the level of gear at `heights` \[m\], each point for itself.
+    #[inline(always)]
+    pub fn depths(&self, heights: &[f64], depths: &mut Vec<f64>) {
+        depths.clear();
+        depths.extend(self.ground.iter().zip(heights).map(|(ground, height)| ground - height));
+    }
+}
+
+impl Edges {
+    /// Changes the depth below the ground \[m\] of points that are hardly covered from their own to what they see; `changed` is working space.
+    #[inline(always)]
+    pub fn see(&self, depths: &mut [f64], changed: &mut Vec<f64>) {
+        changed.clear();
+        changed.extend(self.edges.iter().map(|edge| {
+            let seen = &self.seen[edge.seen.start as usize..edge.seen.end as usize];
+            let seen = seen.iter().map(|&(site, weight)| weight * depths[site as usize]);
+            edge.own * depths[edge.site as usize] + seen.sum::<f64>()
+        }));
+        for (edge, &depth) in self.edges.iter().zip(&*changed) {
+            depths[edge.site as usize] = depth;
+        }
+    }
+}
