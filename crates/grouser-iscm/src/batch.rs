@@ -158,8 +158,8 @@ impl Batch {
         }
     }
 
-    /// F3 to F5 over ground of `spacing` \[m\], with the widest vectors of the machine; sums grow until [`Batch::give`]. Nothing is fused, so
-    /// that each instruction set gives the same bits.
+    /// F3 to F5 over ground of `spacing` \[m\], with the widest vectors of the machine; sums grow until [`Batch::give`]. Products and sums
+    /// are fused where written so, and each instruction set gives the same bits.
     pub fn answer(&mut self, sub: &SubTriangles, spacing: f64) {
         #[cfg(target_arch = "x86_64")]
         {
@@ -168,7 +168,7 @@ impl Batch {
                 return unsafe { self.answer_avx512(sub, spacing) };
             }
             // SAFETY: as above.
-            if is_x86_feature_detected!("avx2") {
+            if has_avx2() {
                 return unsafe { self.answer_avx2(sub, spacing) };
             }
         }
@@ -176,13 +176,13 @@ impl Batch {
     }
 
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
+    #[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl")]
     fn answer_avx512(&mut self, sub: &SubTriangles, spacing: f64) {
         self.answer_portable(sub, spacing);
     }
 
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn answer_avx2(&mut self, sub: &SubTriangles, spacing: f64) {
         self.answer_portable(sub, spacing);
     }
@@ -229,31 +229,31 @@ impl Batch {
         let per_centre = 1.0 / sub.centres().len() as f64;
         const ZERO: [f64; WIDTH] = [0.0; WIDTH];
         let (mut z, mut g, mut p, mut slope) = (ZERO, ZERO, ZERO, ZERO);
-        for &[b_0, b_1, b_2] in sub.centres() {
-            let (s_0, s_1, s_2) = (b_0 * b_1, b_1 * b_2, b_2 * b_0);
+        for &b in sub.centres() {
+            let between = [b[0] * b[1], b[1] * b[2], b[2] * b[0]];
             for n in 0..WIDTH {
-                z[n] = b_0 * z_of[0][n] + b_1 * z_of[1][n] + b_2 * z_of[2][n];
+                z[n] = blend(b, [z_of[0][n], z_of[1][n], z_of[2][n]]);
                 if !IS_DEEP {
-                    g[n] = b_0 * depth_of[0][n] + b_1 * depth_of[1][n] + b_2 * depth_of[2][n];
+                    g[n] = blend(b, [depth_of[0][n], depth_of[1][n], depth_of[2][n]]);
                 }
                 if IS_CURVED {
-                    let below = s_0 * sag_of[0][n] + s_1 * sag_of[1][n] + s_2 * sag_of[2][n];
+                    let below = blend(between, [sag_of[0][n], sag_of[1][n], sag_of[2][n]]);
                     z[n] += below;
                     g[n] += if IS_DEEP { 0.0 } else { below };
                 }
-                p[n] = line[0][n] + line[1][n] * z[n];
+                p[n] = line[1][n].mul_add(z[n], line[0][n]);
                 slope[n] = line[1][n];
             }
             for [at, bend] in &self.kinks[..self.n_kinks] {
                 let (at, bend) = (&at[first..first + WIDTH], &bend[first..first + WIDTH]);
                 for n in 0..WIDTH {
                     let beyond = z[n] - at[n];
-                    p[n] += bend[n] * if beyond > 0.0 { beyond } else { 0.0 };
+                    p[n] = bend[n].mul_add(if beyond > 0.0 { beyond } else { 0.0 }, p[n]);
                     slope[n] += if beyond > 0.0 { bend[n] } else { 0.0 };
                 }
             }
             for n in 0..WIDTH {
-                let l_c = b_0 * share_of[0][n] + b_1 * share_of[1][n] + b_2 * share_of[2][n];
+                let l_c = blend(b, [share_of[0][n], share_of[1][n], share_of[2][n]]);
                 let share = l_c * on_lines[n] * per_centre;
                 let (multiplier, rising) = if IS_DEEP {
                     (share, 0.0)
@@ -266,10 +266,13 @@ impl Batch {
                 };
                 let f = p[n] * multiplier;
                 pressure[n] += f;
-                moment[0][n] += f * b_0;
-                moment[1][n] += f * b_1;
-                moment[2][n] += f * b_2;
-                stiffness[n] += slope[n] * multiplier + if IS_DEEP { 0.0 } else { p[n] * rising };
+                moment[0][n] = f.mul_add(b[0], moment[0][n]);
+                moment[1][n] = f.mul_add(b[1], moment[1][n]);
+                moment[2][n] = f.mul_add(b[2], moment[2][n]);
+                stiffness[n] = slope[n].mul_add(multiplier, stiffness[n]);
+                if !IS_DEEP {
+                    stiffness[n] = p[n].mul_add(rising, stiffness[n]);
+                }
             }
         }
         self.pressure[first..first + WIDTH].copy_from_slice(&pressure);
@@ -375,19 +378,32 @@ impl Batch {
     }
 }
 
+/// Whether this machine has the vectors of four numbers that [`Batch::answer`] uses.
+#[cfg(target_arch = "x86_64")]
+fn has_avx2() -> bool {
+    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
+}
+
 /// Whether this machine has the vectors of eight numbers that [`Batch::answer`] uses.
 #[cfg(target_arch = "x86_64")]
 fn has_avx512() -> bool {
-    is_x86_feature_detected!("avx512f")
+    has_avx2()
+        && is_x86_feature_detected!("avx512f")
         && is_x86_feature_detected!("avx512dq")
         && is_x86_feature_detected!("avx512vl")
+}
+
+/// Σ b v, fused.
+#[inline(always)]
+fn blend(b: [f64; 3], v: [f64; 3]) -> f64 {
+    b[2].mul_add(v[2], b[1].mul_add(v[1], b[0] * v[0]))
 }
 
 /// Adds the products of `a` and `b`.
 #[inline(always)]
 fn add_products(sums: &mut Lane, a: &Lane, b: &Lane) {
     for n in 0..LANES {
-        sums[n] += a[n] * b[n];
+        sums[n] = a[n].mul_add(b[n], sums[n]);
     }
 }
 

@@ -71,7 +71,7 @@ fn ways() -> Vec<(&'static str, Way)> {
     #[cfg(target_arch = "x86_64")]
     {
         // SAFETY: in each, the instructions were just found on this machine.
-        if is_x86_feature_detected!("avx2") {
+        if has_avx2() {
             ways.push(("AVX2", |batch, sub, d| unsafe { batch.answer_avx2(sub, d) }));
         }
         if has_avx512() {
