@@ -7,7 +7,7 @@ use nalgebra::Matrix6;
 
 use crate::contact::Wrench;
 use crate::polygon::{Answer, Corners, PolygonLoad, SubTriangles};
-use crate::response::KINKS;
+use crate::response::{FEW, KINKS};
 
 /// Polygons of a batch.
 pub(crate) const LANES: usize = 32;
@@ -150,8 +150,14 @@ impl Batch {
             }
             self.line[0][n] = lines.c;
             self.line[1][n] = lines.k;
-            self.n_kinks = self.n_kinks.max(lines.kinks.len());
-            for (kink, &[at, bend]) in self.kinks.iter_mut().zip(lines.kinks) {
+            self.n_kinks = self.n_kinks.max(lines.n_kinks);
+            // The few with a count that is known, so that they are copied without a branch.
+            let (few, others) = lines.kinks.split_at(FEW);
+            for (kink, &[at, bend]) in self.kinks.iter_mut().zip(few) {
+                kink[0][n] = at;
+                kink[1][n] = bend;
+            }
+            for (kink, &[at, bend]) in self.kinks[FEW..].iter_mut().zip(others) {
                 kink[0][n] = at;
                 kink[1][n] = bend;
             }
@@ -369,7 +375,7 @@ impl Batch {
 
     /// Empties the batch.
     pub fn clear(&mut self) {
-        for kink in &mut self.kinks[..self.n_kinks] {
+        for kink in &mut self.kinks[FEW..self.n_kinks.max(FEW)] {
             kink[1] = ZERO;
         }
         (self.len, self.n_kinks) = (0, 0);

@@ -88,18 +88,13 @@ impl Levels {
     #[inline(always)]
     pub fn overlaps(&self, low: f64, high: f64) -> [f64; MOST_LEVELS] {
         let mut overlaps = [0.0; MOST_LEVELS];
-        if self.is_one() {
-            overlaps[0] = high - low;
-            return overlaps;
-        }
         let mut below = 0.0;
+        // Without a branch: how many levels there are is not to be foreseen. Above the last one nothing is left.
         for k in 0..MOST_LEVELS {
             let is_last = k + 1 == MOST_LEVELS || self.0[k + 1].share == 0.0;
             let upper = if is_last { f64::INFINITY } else { below + self.0[k].share };
-            overlaps[k] = f64::max(high.min(upper) - low.max(below), 0.0);
-            if is_last {
-                break;
-            }
+            let overlap = high.min(upper) - low.max(below);
+            overlaps[k] = if overlap > 0.0 { overlap } else { 0.0 };
             below = upper;
         }
         without_overhangs(overlaps, high - low)

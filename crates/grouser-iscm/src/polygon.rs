@@ -19,10 +19,6 @@ pub enum PartialLoad {
 pub struct SubTriangles {
     resolution: usize,
     centres: Vec<[f64; 3]>,
-    /// Means of bᵢ bⱼ over the centres.
-    second: [[f64; 3]; 3],
-    /// Means of bᵢ bⱼ bₖ over the centres.
-    third: [[[f64; 3]; 3]; 3],
 }
 
 impl SubTriangles {
@@ -41,19 +37,7 @@ impl SubTriangles {
                 }
             }
         }
-        let (mut second, mut third) = ([[0.0; 3]; 3], [[[0.0; 3]; 3]; 3]);
-        let share = 1.0 / (n * n) as f64;
-        for b in &centres {
-            for k in 0..3 {
-                for l in 0..3 {
-                    second[k][l] += b[k] * b[l] * share;
-                    for m in 0..3 {
-                        third[k][l][m] += b[k] * b[l] * b[m] * share;
-                    }
-                }
-            }
-        }
-        Self { resolution: n, centres, second, third }
+        Self { resolution: n, centres }
     }
 
     /// Parts per side.
@@ -162,16 +146,9 @@ pub(crate) fn integrate<'a>(
     contact: f64,
     kinks: &'a mut [Kink; KINKS],
 ) -> Answer<'a> {
-    let Corners { z, share, depth, sag } = corners;
+    let Corners { z, sag, .. } = corners;
     let [least, most] = sag.range;
-    let is_deep = partial == PartialLoad::Step || smallest(*depth) + least >= contact;
-    let is_full = *share == [1.0; 3] && is_deep;
-    let is_smooth = is_full || (is_deep && partial == PartialLoad::Proportional);
-    let range = [smallest(*z) + least, largest(*z) + most];
-    match ground.lines(range, kinks) {
-        Some(lines) if is_smooth && lines.kinks.is_empty() && (is_full || sag.is_none()) => {
-            Answer::Load(on_a_line(sub, lines.c, lines.k, corners, is_full))
-        }
+    match ground.lines([smallest(*z) + least, largest(*z) + most], kinks) {
         Some(lines) if partial == PartialLoad::Proportional => Answer::OnLines { lines, contact },
         _ => Answer::Load(by_centres(sub, ground, corners, partial, contact)),
     }
@@ -214,31 +191,6 @@ pub(crate) fn by_centres(
     load
 }
 
-/// The sums over all centres in closed form where pressure is c + k z: the same numbers as centre by centre, but for rounding.
-#[inline(always)]
-fn on_a_line(
-    sub: &SubTriangles,
-    c: f64,
-    k: f64,
-    Corners { z, share, sag: Sag { products: sag, .. }, .. }: &Corners,
-    is_full: bool,
-) -> PolygonLoad {
-    let unshared = sub.second.map(|m| c / 3.0 + k * blend(&m, z));
-    if is_full {
-        let (second, third) = (&sub.second, &sub.third);
-        let below = sag[0] * second[0][1] + sag[1] * second[1][2] + sag[2] * second[2][0];
-        let below_at = |m: usize| sag[0] * third[0][1][m] + sag[1] * third[1][2][m] + sag[2] * third[2][0][m];
-        let pressure = c + k * ((z[0] + z[1] + z[2]) / 3.0 + below);
-        let moment = [0, 1, 2].map(|m| unshared[m] + k * below_at(m));
-        return PolygonLoad { pressure, moment, stiffness: k };
-    }
-    let moment = [0, 1, 2].map(|m| {
-        (0..3).map(|i| share[i] * (c * sub.second[i][m] + k * blend(&sub.third[i][m], z))).sum::<f64>()
-    });
-    let pressure = blend(share, &unshared);
-    PolygonLoad { pressure, moment, stiffness: k * (share[0] + share[1] + share[2]) / 3.0 }
-}
-
 /// Force \[N\] over a triangle of horizontal area `area` \[m²\] with corner sinkages `z` \[m\]; corners carry load where `is_loaded`.
 ///
 /// P2 Eqs. (5), (6): the vertical part of the polygon's force. The pressure array is read as in a run.
@@ -258,7 +210,7 @@ pub fn polygon_force(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::response::{NO_KINKS, Stiff};
+    use crate::response::Stiff;
 
     #[test]
     fn sub_triangles_tile_the_triangle() {
@@ -285,34 +237,5 @@ mod tests {
             assert!((covered(r, [0.0, 1.0, 1.0]) - 0.75).abs() < 1e-12);
         }
         assert!((covered(3, [1.0, 0.0, 0.0]) - 0.25).abs() > 0.02);
-    }
-
-    #[test]
-    fn the_short_cut_on_a_line_equals_the_sum() {
-        #[derive(Clone, Copy)]
-        struct Long(f64, f64);
-        impl Response for Long {
-            fn pressure(&self, _: &[f64; 3], z: f64) -> (f64, f64) {
-                (self.0 + self.1 * z, self.1)
-            }
-        }
-        let (sub, z) = (SubTriangles::new(4), [0.01, 0.05, 0.02]);
-        let per_resolution = 1.0 / 0.1;
-        let array = OneArray { pressures: &[0.0, 1e5, 3e5], per_resolution };
-        for (shift, c, k) in [(0.0, 0.0, 1e6), (0.1, -1e5, 2e6)] {
-            let z = z.map(|z| z + shift);
-            for share in [[1.0; 3], [0.2, 1.0, 0.7], [0.0, 0.3, 0.0]] {
-                let corners = Corners { z, share, depth: z, sag: Sag::default() };
-                let mut kinks = NO_KINKS;
-                let short = integrate(&sub, array, &corners, PartialLoad::Proportional, 1e-4, &mut kinks);
-                let Answer::Load(short) = short else { panic!("one line in {corners:?}") };
-                let long = by_centres(&sub, Long(c, k), &corners, PartialLoad::Proportional, 1e-4);
-                assert!((short.pressure - long.pressure).abs() < 1e-9 * long.pressure);
-                assert!((short.stiffness - long.stiffness).abs() < 1e-9 * long.stiffness);
-                for i in 0..3 {
-                    assert!((short.moment[i] - long.moment[i]).abs() < 1e-9 * long.pressure);
-                }
-            }
-        }
     }
 }

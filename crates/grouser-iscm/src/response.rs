@@ -5,6 +5,9 @@ use crate::pressure::interpolate;
 /// Most kinks of the pressure within one triangle that are worked on together.
 pub(crate) const KINKS: usize = 8;
 
+/// Kinks that are copied in any case.
+pub(crate) const FEW: usize = 4;
+
 /// Where a line bends \[m\] and by how much \[Pa/m\].
 pub(crate) type Kink = [f64; 2];
 pub(crate) const NO_KINKS: [Kink; KINKS] = [[0.0; 2]; KINKS];
@@ -14,7 +17,10 @@ pub(crate) const NO_KINKS: [Kink; KINKS] = [[0.0; 2]; KINKS];
 pub(crate) struct Lines<'a> {
     pub c: f64,
     pub k: f64,
+    /// The kinks in between, and perhaps others beyond, which do no harm.
     pub kinks: &'a [Kink],
+    /// How many there are in between.
+    pub n_kinks: usize,
 }
 
 /// Numbers of the first and last line of an array of `n` values from sinkage `low` to `high` \[m\].
@@ -58,7 +64,7 @@ pub(crate) trait Response: Copy {
 pub(crate) struct Prepared {
     /// Pressure at no sinkage and slope of the line after each value but the last.
     lines: Vec<[f64; 2]>,
-    /// The kink at each value but the last; none at the first.
+    /// The kink at each value but the last; none at the first, nor at a few beyond the last.
     kinks: Vec<Kink>,
 }
 
@@ -68,7 +74,7 @@ impl Prepared {
         let kinks = (1..n - 1).map(|value| kink(at, value, per_resolution));
         Self {
             lines: (0..n - 1).map(|first| line(at, first, per_resolution)).collect(),
-            kinks: std::iter::once([0.0; 2]).chain(kinks).collect(),
+            kinks: std::iter::once([0.0; 2]).chain(kinks).chain([[0.0; 2]; FEW]).collect(),
         }
     }
 }
@@ -94,7 +100,10 @@ impl Response for PreparedArray<'_> {
         let OneArray { pressures, per_resolution } = self.array;
         let (first, last) = first_and_last(pressures.len(), per_resolution, range);
         let [c, k] = self.prepared.lines[first];
-        (last - first <= KINKS).then(|| Lines { c, k, kinks: &self.prepared.kinks[first + 1..=last] })
+        let n_kinks = last - first;
+        // At least a few, so that how many need not be known where they are copied.
+        let kinks = &self.prepared.kinks[first + 1..][..n_kinks.max(FEW)];
+        (n_kinks <= KINKS).then_some(Lines { c, k, kinks, n_kinks })
     }
 }
 
@@ -108,12 +117,14 @@ fn lines<'s>(
     kinks: &'s mut [Kink; KINKS],
 ) -> Option<Lines<'s>> {
     let (first, last) = first_and_last(n, per_resolution, range);
-    let bends = kinks.get_mut(..last - first)?;
-    for (bend, value) in bends.iter_mut().zip(first + 1..) {
+    let n_kinks = last - first;
+    for (bend, value) in kinks.get_mut(..n_kinks)?.iter_mut().zip(first + 1..) {
         *bend = kink(&at, value, per_resolution);
     }
+    let few = kinks.get_mut(..n_kinks.max(FEW))?;
+    few[n_kinks..].fill([0.0; 2]);
     let [c, k] = line(&at, first, per_resolution);
-    Some(Lines { c, k, kinks: bends })
+    Some(Lines { c, k, kinks: few, n_kinks })
 }
 
 /// Soil with one array for the whole triangle.
@@ -197,6 +208,6 @@ impl Response for Stiff {
     where
         Self: 's,
     {
-        (range[0] >= 0.0).then_some(Lines { c: 0.0, k: self.0, kinks: &[] })
+        (range[0] >= 0.0).then_some(Lines { c: 0.0, k: self.0, kinks: &[[0.0; 2]; FEW], n_kinks: 0 })
     }
 }

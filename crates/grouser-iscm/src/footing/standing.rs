@@ -55,13 +55,17 @@ impl Footing {
         let flag = flag | 1 << (CORNER + level);
         let (site_of, share) = (&self.site_of, &self.levels[level].share);
         let n_rows = site_of.len() / n_x;
-        let mut edges = Edges::default();
-        edges.seen.reserve(4 * self.nodes.len());
-        for (site, &n) in self.nodes.iter().enumerate() {
-            let (n, own) = (n as usize, share[site] / HARDLY_COVERED);
-            if self.flags[n] & flag != flag || own >= 1.0 {
-                continue;
-            }
+        let mut sites = vec![0; self.nodes.len()];
+        let mut n_edges = 0;
+        // Without a branch: which points are hardly covered is not to be foreseen.
+        for (site, (&n, &share)) in self.nodes.iter().zip(share).enumerate() {
+            sites[n_edges] = site as u32;
+            n_edges += usize::from(self.flags[n as usize] & flag == flag && share < HARDLY_COVERED);
+        }
+        let mut edges =
+            Edges { edges: Vec::with_capacity(n_edges), seen: Vec::with_capacity(AROUND.len() * n_edges) };
+        for &site in &sites[..n_edges] {
+            let (n, own) = (self.nodes[site as usize] as usize, share[site as usize] / HARDLY_COVERED);
             let (i, j) = (n % n_x, n / n_x);
             let (first, mut sum) = (edges.seen.len(), 0.0);
             edges.seen.resize(first + AROUND.len(), (0, 0.0));
@@ -86,7 +90,7 @@ impl Footing {
             if sum > 0.0 {
                 let rest = (1.0 - own) / sum;
                 edges.seen[first..].iter_mut().for_each(|seen| seen.1 *= rest);
-                edges.edges.push(Edge { site: site as u32, own, seen: first as u32..last as u32 });
+                edges.edges.push(Edge { site, own, seen: first as u32..last as u32 });
             }
         }
         edges
