@@ -233,8 +233,7 @@ impl Batch {
         let (mut pressure, mut stiffness, mut moment) =
             (eight(&self.pressure), eight(&self.stiffness), of(&self.moment));
         let per_centre = 1.0 / sub.centres().len() as f64;
-        const ZERO: [f64; WIDTH] = [0.0; WIDTH];
-        let (mut z, mut g, mut p, mut slope) = (ZERO, ZERO, ZERO, ZERO);
+        let [mut z, mut g, mut p, mut slope] = [[0.0; WIDTH]; 4];
         for &b in sub.centres() {
             let between = [b[0] * b[1], b[1] * b[2], b[2] * b[0]];
             for n in 0..WIDTH {
