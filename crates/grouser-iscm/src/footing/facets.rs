@@ -62,7 +62,7 @@ pub(crate) struct OnLevels {
 pub(crate) struct Pressing {
     /// Deep in some levels, so that only the sum of what they share counts.
     pub deep: Vec<OnLevels>,
-    /// Not in all corners below a level, or not deep, for each level.
+    /// On one level each: at its edge, or not deep.
     pub partly: Vec<OnLevels>,
     /// Working space.
     below: Vec<u8>,
@@ -80,20 +80,18 @@ impl Facets {
     /// than `contact` \[m\] is deep.
     #[inline(always)]
     pub fn pressing(&self, depths: &[Vec<f64>], contact: f64, found: &mut Pressing) {
+        let Pressing { deep, partly, below, beyond } = found;
         if self.sags.is_empty() {
             // Which points do can be told beforehand, one bit a level.
-            let Pressing { below, beyond, .. } = found;
             bits(depths, 0.0, below);
             bits(depths, contact, beyond);
-            let (below, beyond) = (std::mem::take(below), std::mem::take(beyond));
-            self.find(found, |_, Facet { sites, .. }| {
+            self.find(deep, partly, |_, Facet { sites, .. }| {
                 let [a, b, c] = sites.map(|site| below[site as usize]);
                 let [d, e, f] = sites.map(|site| beyond[site as usize]);
                 [a | b | c, d & e & f]
             });
-            (found.below, found.beyond) = (below, beyond);
         } else {
-            self.find(found, |n, Facet { sites, .. }| {
+            self.find(deep, partly, |n, Facet { sites, .. }| {
                 let [least, most] = self.sags[n].range();
                 let mut bits = [0, 0];
                 for (level, depths) in depths.iter().enumerate() {
@@ -108,7 +106,12 @@ impl Facets {
 
     /// Finds triangles of which `of` says on which levels they would press and on which they would be deep.
     #[inline(always)]
-    fn find(&self, Pressing { deep, partly, .. }: &mut Pressing, of: impl Fn(usize, &Facet) -> [u8; 2]) {
+    fn find(
+        &self,
+        deep: &mut Vec<OnLevels>,
+        partly: &mut Vec<OnLevels>,
+        of: impl Fn(usize, &Facet) -> [u8; 2],
+    ) {
         deep.resize(self.facets.len(), OnLevels::default());
         partly.clear();
         let mut n_deep = 0;
@@ -129,7 +132,7 @@ impl Facets {
     }
 }
 
-/// One bit for each level of `depths` on which a point is deeper than a `least` depth \[m\], or as deep where that is more than none.
+/// One bit for each level of `depths` \[m\] on which a point lies below the ground, at least as deep as `least` \[m\].
 #[inline(always)]
 fn bits(depths: &[Vec<f64>], least: f64, bits: &mut Vec<u8>) {
     bits.clear();

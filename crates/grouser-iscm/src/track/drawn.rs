@@ -142,37 +142,35 @@ impl DrawnTrack {
         for footing in imprint.footings.iter().filter(|footing| footing.layer + 1 < n_layers) {
             let cell = imprint.layers[footing.layer].spacing.powi(2);
             let Sites { on_grid, slope, owner, .. } = &footing.sites;
-            let of = |standing: &Standing| {
-                let is_ours = |&n: &usize| standing.share[n] > 0.0 && self.owners.contains(&owner[n]);
-                let points = (0..owner.len()).filter(is_ours);
-                points.map(|n| (n, standing.share[n], standing.ground[n])).collect::<Vec<_>>()
-            };
-            for (n, share, ground) in footing.levels.iter().flat_map(of) {
-                let position = Vec3::from(footing.sites.position(n));
-                if position.z > ground + WITHIN_REACH {
-                    continue;
+            for Standing { share, ground } in &footing.levels {
+                let is_ours = |&n: &usize| share[n] > 0.0 && self.owners.contains(&owner[n]);
+                for n in (0..owner.len()).filter(is_ours) {
+                    let position = Vec3::from(footing.sites.position(n));
+                    if position.z > ground[n] + WITHIN_REACH {
+                        continue;
+                    }
+                    let slope = [slope[0][n], slope[1][n]];
+                    let normal = Vec3::new(-slope[0], -slope[1], 1.0);
+                    let arm = (position - imprint.reference).cross(&normal);
+                    let link = self.links[(owner[n] - self.owners.start) as usize];
+                    let way = link.map_or(0.0, |a| {
+                        let along = joints[a + 1] - joints[a];
+                        (position - joints[a]).dot(&along) / along.norm_squared()
+                    });
+                    self.touches.push(Touch {
+                        link,
+                        share: way,
+                        normal: [normal.dot(&self.axes[0]), normal.dot(&self.axes[1])],
+                        with_body: Vector6::new(normal.x, normal.y, normal.z, arm.x, arm.y, arm.z),
+                    });
+                    self.nodes.push(TouchedNode {
+                        on_grid: on_grid[n] as usize,
+                        position,
+                        slope,
+                        ground: ground[n],
+                        area: share[n] * cell,
+                    });
                 }
-                let slope = [slope[0][n], slope[1][n]];
-                let normal = Vec3::new(-slope[0], -slope[1], 1.0);
-                let arm = (position - imprint.reference).cross(&normal);
-                let link = self.links[(owner[n] - self.owners.start) as usize];
-                let along = link.map_or(0.0, |a| {
-                    let along = joints[a + 1] - joints[a];
-                    (position - joints[a]).dot(&along) / along.norm_squared()
-                });
-                self.touches.push(Touch {
-                    link,
-                    share: along,
-                    normal: [normal.dot(&self.axes[0]), normal.dot(&self.axes[1])],
-                    with_body: Vector6::new(normal.x, normal.y, normal.z, arm.x, arm.y, arm.z),
-                });
-                self.nodes.push(TouchedNode {
-                    on_grid: on_grid[n] as usize,
-                    position,
-                    slope,
-                    ground,
-                    area: share * cell,
-                });
             }
         }
         self.at_rest = self.rest(terrain, &Pose::identity()).joints;
