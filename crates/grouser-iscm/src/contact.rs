@@ -2,11 +2,13 @@
 //!
 //! Steps as in `docs/theory/iscm.md`, F1 to F5.
 
+use std::sync::OnceLock;
+
 use grouser_geometry::{Pose, Vec3};
 use nalgebra::{Matrix3, Matrix6};
 
 use crate::batch::{Batch, LANES};
-use crate::footing::{Facets, Footing, OnLevels, Pressing, Sites, Standing};
+use crate::footing::{CLOSE, Facets, Footing, OnLevels, Pressing, Reach, Sites, Span, Standing};
 use crate::imprint::{Imprint, MOST_SAG};
 use crate::levels::{MOST_LEVELS, Pressed};
 use crate::polygon::{Answer, Corners, PartialLoad, Sag, SubTriangles, integrate};
@@ -80,8 +82,12 @@ pub struct FootImprint {
     pub reference: Vec3,
     /// Slack tracks: their shoes give way to the ground.
     pub tracks: Vec<DrawnTrack>,
-    /// What of each imprint can press.
+    /// What of each imprint can press, of slack tracks also once they have sunk by more than [`CLOSE`].
     pub(crate) footings: Vec<Footing>,
+    /// The same for gear that sinks by more, made when it does.
+    far: OnceLock<Vec<Footing>>,
+    /// Bounds how far it sinks.
+    span: Span,
     /// The lines of the relationship where it is the same everywhere.
     prepared: Option<Prepared>,
 }
@@ -130,12 +136,22 @@ impl FootImprint {
         reference: Vec3,
         terrain: &Terrain,
         partial: PartialLoad,
+        reach: Reach,
     ) -> Self {
-        let footings = Footing::of(&layers, terrain, partial);
+        let (footings, span) = Footing::of(&layers, terrain, partial, reach);
         let field = terrain.field();
         let prepared =
             (!field.is_per_node()).then(|| Prepared::new(field.of_node(0), 1.0 / field.resolution()));
-        Self { layers, reference, tracks: Vec::new(), footings, prepared }
+        Self { layers, reference, tracks: Vec::new(), footings, far: OnceLock::new(), span, prepared }
+    }
+
+    /// What can press after the gear moved by `motion` since it was drawn over the same `terrain`.
+    fn footings_after(&self, motion: &Pose, terrain: &Terrain, partial: PartialLoad) -> &[Footing] {
+        let turn = motion.rotation.to_rotation_matrix().matrix() - Matrix3::identity();
+        if !self.tracks.is_empty() || self.span.sinks(&turn, &motion.translation.vector) < CLOSE {
+            return &self.footings;
+        }
+        self.far.get_or_init(|| Footing::of(&self.layers, terrain, partial, Reach::Far).0)
     }
 
     /// Force of the `terrain` on the gear after it moved by `motion` since the imprints were drawn.
@@ -167,7 +183,7 @@ impl FootImprint {
         let followed = self.followed(terrain, motion);
         let ground = Ground::new(terrain, self.prepared.as_ref());
         let (mut nodes, mut found, mut batch) = (Nodes::default(), Pressing::default(), Batch::new());
-        for footing in &self.footings {
+        for footing in self.footings_after(motion, terrain, integration.partial) {
             self.stand(footing, motion, &followed, integration.partial, &mut nodes);
             let ready = footing.ready(&self.layers, integration.partial, nodes.sunk);
             for (edges, depths) in ready.edges.iter().zip(&mut nodes.depths) {
@@ -197,7 +213,7 @@ impl FootImprint {
         let followed = self.followed(terrain, motion);
         let mut parts: Vec<(usize, Pressed, bool)> = Vec::new();
         let mut nodes = Nodes::default();
-        for footing in &self.footings {
+        for footing in self.footings_after(motion, terrain, PartialLoad::Proportional) {
             self.stand(footing, motion, &followed, PartialLoad::Proportional, &mut nodes);
             parts.reserve(footing.sites.len());
             for (n, (&node, &height)) in footing.sites.on_grid.iter().zip(&nodes.height).enumerate() {

@@ -1,6 +1,7 @@
 //! What of an imprint can press on the ground: its points and triangles, found once a drawing.
 
 mod facets;
+mod span;
 mod standing;
 #[cfg(test)]
 mod tests;
@@ -8,11 +9,12 @@ mod tests;
 use std::sync::OnceLock;
 
 pub(crate) use facets::{Facets, OnLevels, Pressing, Sites};
+pub(crate) use span::Span;
 pub(crate) use standing::{Edges, Standing};
 
 use facets::{Facet, owner};
 
-use crate::imprint::{Imprint, MOST_SAG};
+use crate::imprint::{Imprint, MOST_SAG, spread};
 use crate::levels::MOST_LEVELS;
 use crate::polygon::{PartialLoad, Sag};
 use crate::terrain::Terrain;
@@ -45,55 +47,71 @@ pub(crate) struct Ready {
     pub edges: Vec<Edges>,
 }
 
+/// How far above the ground gear is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Reach {
+    /// As far as it may press before it has sunk by [`CLOSE`] since it was drawn.
+    Close,
+    /// [`WITHIN_REACH`].
+    Far,
+}
+
 /// What a layer covers of each level of its cells.
 #[derive(Clone, Debug, Default)]
 struct Parts {
     /// Share of each cell and height of the level there \[m\]; empty for a level on which nothing stands.
     cells: [Vec<(f64, f64)>; MOST_LEVELS],
-    /// [`NEAR`] where the ground is.
-    flags: Vec<u16>,
+    /// One bit for each level: whether gear stands on it, is within reach of it, and presses on it once sunk by [`CLOSE`].
+    stands: Vec<u8>,
+    near: Vec<u8>,
+    close: Vec<u8>,
     /// First and last row with gear near the ground.
     rows: [usize; 2],
 }
 
-/// One bit for each level: whether the ground may come to press at a node before the next drawing.
+/// One bit for each level: whether gear within reach of it stands at a node or beside it.
 const NEAR: u16 = (1 << MOST_LEVELS) - 1;
 /// Where the bits begin that tell whether it does once the gear has sunk by [`CLOSE`].
 const IS_CLOSE: usize = MOST_LEVELS;
-/// Where the bits begin that tell whether the node is the corner of a triangle.
+/// Where the bits begin that tell whether the node may be the corner of a triangle or is seen from one.
 const CORNER: usize = 2 * MOST_LEVELS;
 /// Whether the node belongs to a rigid object.
 const FIXED: u16 = 1 << (3 * MOST_LEVELS);
 const NONE: u32 = u32::MAX;
 
-/// Sinkage since the drawing up to which only triangles close to the ground are looked at \[m\]; changes cost, not results.
-const CLOSE: f64 = 4e-3;
+/// Sinkage since the drawing up to which only gear close to the ground is looked at \[m\]; changes cost, not results.
+pub(crate) const CLOSE: f64 = 4e-3;
 /// Height above the ground up to which the gear may come to press on it before the next drawing \[m\].
 pub(crate) const WITHIN_REACH: f64 = 0.12;
 
 impl Footing {
-    /// Of all `layers`, the lowest first, on the levels of `terrain`; what lower layers cover is gone for higher ones.
-    pub fn of(layers: &[Imprint], terrain: &Terrain, partial: PartialLoad) -> Vec<Self> {
-        let mut parts = Parts::default();
+    /// Of all `layers`, the lowest first, on the levels of `terrain`; what lower layers cover is gone for higher ones. Also gives what bounds
+    /// how far any gear sinks.
+    pub fn of(
+        layers: &[Imprint],
+        terrain: &Terrain,
+        partial: PartialLoad,
+        reach: Reach,
+    ) -> (Vec<Self>, Span) {
+        let (mut parts, mut span) = (Parts::default(), Span::default());
         let mut footings = Vec::with_capacity(layers.len());
         for k in 0..layers.len() {
-            parts.find(layers, k, terrain);
+            parts.find(layers, k, terrain, reach, &mut span);
             if parts.rows[0] <= parts.rows[1] {
                 footings.push(Self::new(layers, k, &parts, terrain, partial));
             }
         }
-        footings
+        (footings, span)
     }
 
     /// Of layer `k` of `layers`, which covers `parts`.
     fn new(layers: &[Imprint], k: usize, parts: &Parts, terrain: &Terrain, partial: PartialLoad) -> Self {
         let imprint = &layers[k];
         let n_x = imprint.n_x;
-        let first_row = parts.rows[0].saturating_sub(1);
-        let window = first_row * n_x..((parts.rows[1] + 1).min(imprint.n_y - 1) + 1) * n_x;
-        let flags = parts.flags[window.clone()].to_vec();
+        let first_row = parts.rows[0].saturating_sub(2);
+        let window = first_row * n_x..((parts.rows[1] + 2).min(imprint.n_y - 1) + 1) * n_x;
+        let flags = parts.flags(window.clone(), n_x, partial);
         let mut footing = Self { layer: k, first_row, flags, ..Self::default() };
-        footing.find_corners(imprint);
         footing.find_sites(imprint, terrain);
         let n_levels = parts.cells.iter().rposition(|cells| !cells.is_empty()).map_or(0, |last| last + 1);
         for (level, cells) in parts.cells[..n_levels].iter().enumerate() {
@@ -102,30 +120,6 @@ impl Footing {
         }
         footing.close = footing.find_close(layers, partial);
         footing
-    }
-
-    /// Marks the corners of all triangles that have one where gear is near the ground.
-    fn find_corners(&mut self, imprint: &Imprint) {
-        let n_x = imprint.n_x;
-        for j in 0..self.flags.len() / n_x - 1 {
-            let (low, high) = self.flags[j * n_x..(j + 2) * n_x].split_at_mut(n_x);
-            for i in 0..n_x - 1 {
-                let near = [low[i], low[i + 1], high[i], high[i + 1]].map(|flags| flags & NEAR);
-                let [a, b, c, d] = near;
-                if a | b | c | d == 0 {
-                    continue;
-                }
-                let mut is_corner = [0; 4];
-                for half in halves(imprint, (i, self.first_row + j)) {
-                    let any = half.iter().fold(0, |any, &corner| any | near[corner]);
-                    half.iter().for_each(|&corner| is_corner[corner] |= any << CORNER);
-                }
-                low[i] |= is_corner[0];
-                low[i + 1] |= is_corner[1];
-                high[i] |= is_corner[2];
-                high[i + 1] |= is_corner[3];
-            }
-        }
     }
 
     /// Makes the points at the marked corners, row by row.
@@ -163,49 +157,22 @@ impl Footing {
 
     /// Finds what presses once the gear has sunk by [`CLOSE`].
     fn find_close(&mut self, layers: &[Imprint], partial: PartialLoad) -> Ready {
-        let n_x = layers[self.layer].n_x;
-        // No underside sags more below the corners of a triangle.
-        let most = CLOSE + 4.0 / 3.0 * MOST_SAG * layers[self.layer].spacing;
-        let mut depths: [Vec<f64>; MOST_LEVELS] = Default::default();
-        for (level, standing) in self.levels.iter().enumerate() {
-            standing.depths(&self.sites.position[2], &mut depths[level]);
-            for ((&n, &depth), &share) in self.nodes.iter().zip(&depths[level]).zip(&standing.share) {
-                self.flags[n as usize] |= u16::from(depth > -most && share > 0.0) << (IS_CLOSE + level);
-            }
-        }
+        let (n_x, most) = (layers[self.layer].n_x, most_above(&layers[self.layer]));
         let mut edges = Vec::with_capacity(self.levels.len());
         if partial == PartialLoad::Proportional {
-            // What is hardly covered sees none deeper than its neighbours.
-            self.spread_close(n_x);
-            for (level, depths) in depths[..self.levels.len()].iter_mut().enumerate() {
+            let (mut depths, mut seen) = (Vec::new(), Vec::new());
+            for level in 0..self.levels.len() {
                 let is_close = 1 << (IS_CLOSE + level);
                 edges.push(self.edges(level, is_close, n_x));
-                edges[level].see(depths, &mut Vec::new());
-                for (&n, &depth) in self.nodes.iter().zip(&*depths) {
+                self.levels[level].depths(&self.sites.position[2], &mut depths);
+                edges[level].see(&mut depths, &mut seen);
+                for (&n, &depth) in self.nodes.iter().zip(&depths) {
                     let is_far = u16::from(depth <= -most) << (IS_CLOSE + level);
                     self.flags[n as usize] &= !is_far;
                 }
             }
         }
         Ready { facets: self.facets_where(layers, partial, IS_CLOSE), edges }
-    }
-
-    /// Marks the neighbours of what is close as close.
-    fn spread_close(&mut self, n_x: usize) {
-        let close = |flags: u16| flags & (NEAR << IS_CLOSE);
-        for row in self.flags.chunks_mut(n_x) {
-            let mut before = 0;
-            for i in 0..row.len() {
-                let here = close(row[i]);
-                row[i] |= before | row.get(i + 1).map_or(0, |next| close(*next));
-                before = here;
-            }
-        }
-        let in_rows = self.flags.clone();
-        for n in n_x..in_rows.len() {
-            self.flags[n] |= close(in_rows[n - n_x]);
-            self.flags[n - n_x] |= close(in_rows[n]);
-        }
     }
 
     /// What may press once the gear has sunk by `sunk` \[m\] since it was drawn in `layers`.
@@ -246,7 +213,7 @@ impl Footing {
                 for half in halves(imprint, (i, row)) {
                     let [a, b, c] = half.map(|corner| flags[corner]);
                     let any = a | b | c;
-                    let levels = (any & (any >> flag) & NEAR) as u8;
+                    let levels = (any & (any >> flag) & (a & b & c) >> CORNER & NEAR) as u8;
                     if levels == 0 {
                         continue;
                     }
@@ -266,13 +233,18 @@ impl Footing {
 
 impl Parts {
     /// Finds what layer `k` of `layers` covers of the levels of `terrain`.
-    fn find(&mut self, layers: &[Imprint], k: usize, terrain: &Terrain) {
+    fn find(&mut self, layers: &[Imprint], k: usize, terrain: &Terrain, reach: Reach, span: &mut Span) {
         let layer = &layers[k];
         let heights = terrain.grid().heights();
+        let most = most_above(layer);
+        let limit = if reach == Reach::Close { most } else { WITHIN_REACH };
         self.cells.iter_mut().for_each(Vec::clear);
-        self.flags.clear();
-        self.flags.resize(layer.nodes.len(), 0);
+        for bits in [&mut self.stands, &mut self.near, &mut self.close] {
+            bits.clear();
+            bits.resize(layer.nodes.len(), 0);
+        }
         self.rows = [usize::MAX, 0];
+        span.add_window(layer);
         for j in 0..layer.n_y {
             let first = (layer.j_0 + j) * terrain.grid().n_x() + layer.i_0;
             let row = &layer.nodes[j * layer.n_x..(j + 1) * layer.n_x];
@@ -290,15 +262,42 @@ impl Parts {
                         cells.resize(layer.nodes.len(), (0.0, 0.0));
                     }
                     let ground = heights[first + i] - levels.get(level).sinkage;
-                    if node.height < ground + WITHIN_REACH {
-                        self.rows = [self.rows[0].min(j), j];
-                        self.flags[j * layer.n_x + i] |= 1 << level;
+                    let (n, above) = (j * layer.n_x + i, node.height - ground);
+                    self.stands[n] |= 1 << level;
+                    self.near[n] |= u8::from(above < limit) << level;
+                    self.close[n] |= u8::from(above < most) << level;
+                    if above < WITHIN_REACH {
+                        span.add(node);
                     }
-                    cells[j * layer.n_x + i] = (overlaps[level], ground);
+                    cells[n] = (overlaps[level], ground);
+                }
+                if self.near[j * layer.n_x + i] != 0 {
+                    self.rows = [self.rows[0].min(j), j];
                 }
             }
         }
     }
+
+    /// Flags of the nodes of a `window` with rows of `n_x`. A point hardly covered sees its neighbours: it may be close because one of them
+    /// is, and so may the triangles at it; they and what they see are points.
+    fn flags(&self, window: std::ops::Range<usize>, n_x: usize, partial: PartialLoad) -> Vec<u16> {
+        let near = spread(&spread(&self.near[window.clone()], n_x), n_x);
+        let close = match partial {
+            PartialLoad::Proportional => spread(&self.close[window.clone()], n_x),
+            PartialLoad::Step => self.close[window.clone()].to_vec(),
+        };
+        let of = near.iter().zip(&self.stands[window]).zip(close);
+        let flags = |((&near, &stands), close): ((&u8, &u8), u8)| {
+            u16::from(near & stands) | u16::from(close) << IS_CLOSE | u16::from(near) << CORNER
+        };
+        of.map(flags).collect()
+    }
+}
+
+/// Height above the ground below which gear may press once it has sunk by [`CLOSE`] \[m\]: no underside sags more below the corners of a
+/// triangle.
+fn most_above(layer: &Imprint) -> f64 {
+    CLOSE + 4.0 / 3.0 * MOST_SAG * layer.spacing
 }
 
 /// The two triangles in the cell of the window of `imprint` with node (`i`, `j`) at its lower left. Corners of the cell: 0 there, 1 to the

@@ -14,6 +14,7 @@ pub use hull::{Hull, HullPoint, Piece};
 pub use wheel::{TreadPattern, TreadedWheel, Wheel, WheelShape, treaded_wheel};
 
 use crate::contact::FootImprint;
+use crate::footing::Reach;
 use crate::imprint::Imprint;
 use crate::polygon::PartialLoad;
 use crate::terrain::Terrain;
@@ -167,7 +168,8 @@ impl Foot {
         for layer in &mut layers {
             layer.carry_edges(grid);
         }
-        let mut drawn = FootImprint::new(layers, pose.translation.vector, terrain, partial);
+        let reach = if tracks.is_empty() { Reach::Close } else { Reach::Far };
+        let mut drawn = FootImprint::new(layers, pose.translation.vector, terrain, partial, reach);
         for track in &mut tracks {
             track.find_touches(&drawn, terrain);
         }

@@ -169,11 +169,12 @@ impl Imprint {
         let heights = ground.heights();
         let at = |i: usize, j: usize| heights[(self.j_0 + j) * ground.n_x() + self.i_0 + i];
         let mut carried = Vec::new();
-        let is_near = self.is_near_gear();
+        let covered: Vec<u8> = self.nodes.iter().map(|node| u8::from(node.coverage > 0.0)).collect();
+        let is_near = spread(&covered, self.n_x);
         for j in 0..self.n_y {
             for i in 0..self.n_x {
                 let own = self.nodes[j * self.n_x + i];
-                if own.coverage >= HARDLY_COVERED || !is_near[j * self.n_x + i] {
+                if own.coverage >= HARDLY_COVERED || is_near[j * self.n_x + i] == 0 {
                     continue;
                 }
                 let (mut sum, mut depth, mut slope, mut largest) = (0.0, 0.0, [0.0; 2], (0.0, own.owner));
@@ -215,24 +216,20 @@ impl Imprint {
             self.nodes[n] = node;
         }
     }
+}
 
-    /// Which nodes have a neighbour that the gear covers, or are covered themselves.
-    fn is_near_gear(&self) -> Vec<bool> {
-        let covered: Vec<bool> = self.nodes.iter().map(|node| node.coverage > 0.0).collect();
-        let mut in_row = covered.clone();
-        for (row, covered) in in_row.chunks_mut(self.n_x.max(1)).zip(covered.chunks(self.n_x.max(1))) {
-            for i in 1..row.len() {
-                row[i] |= covered[i - 1];
-                row[i - 1] |= covered[i];
-            }
-        }
-        let mut is_near = in_row.clone();
-        for n in self.n_x..is_near.len() {
-            is_near[n] |= in_row[n - self.n_x];
-            is_near[n - self.n_x] |= in_row[n];
-        }
-        is_near
+/// What each node of a window with rows of `n_x` or one of its neighbours has, bit by bit.
+pub(crate) fn spread(bits: &[u8], n_x: usize) -> Vec<u8> {
+    let or = |to: &mut [u8], from: &[u8]| to.iter_mut().zip(from).for_each(|(to, from)| *to |= from);
+    let mut in_rows = bits.to_vec();
+    for (row, of) in in_rows.chunks_mut(n_x.max(1)).zip(bits.chunks(n_x.max(1))) {
+        or(&mut row[1..], of);
+        or(row, &of[1..]);
     }
+    let mut spread = in_rows.clone();
+    or(&mut spread[n_x.min(bits.len())..], &in_rows);
+    or(&mut spread, &in_rows[n_x.min(bits.len())..]);
+    spread
 }
 
 /// Share of a cell below which the height of the gear there is partly carried on from its neighbours.
