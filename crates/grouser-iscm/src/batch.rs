@@ -120,6 +120,8 @@ impl Batch {
     #[inline(always)]
     pub fn push(&mut self, points: &[[f64; 3]; 3], corners: &Corners, answer: &Answer, counts: bool) {
         let n = self.len;
+        // So that no store below looks for itself.
+        assert!(n < LANES, "a batch holds {LANES} polygons");
         self.len += 1;
         self.counts[n] = f64::from(u8::from(counts));
         for k in 0..3 {

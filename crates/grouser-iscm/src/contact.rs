@@ -99,6 +99,8 @@ struct Nodes {
     z: Vec<f64>,
     /// Height of the ground then \[m\].
     height: Vec<f64>,
+    /// Where that is, from the reference point of the imprints, and the sinkage \[m\].
+    places: Vec<[f64; 4]>,
     /// Depth of the gear below each level of the present ground \[m\], before it sees its neighbours.
     depths: [Vec<f64>; MOST_LEVELS],
     /// How far the gear has sunk since it was drawn, at most \[m\].
@@ -112,8 +114,15 @@ struct Nodes {
 impl Nodes {
     /// Corners of a triangle between three `sites` of a footing where it presses on `levels`: on one, or deep in all of them.
     #[inline(always)]
-    fn corners(&self, footing: &Footing, sites: [usize; 3], levels: u8, is_deep: bool, sag: Sag) -> Corners {
-        let z = sites.map(|site| self.z[site]);
+    fn corners(
+        &self,
+        footing: &Footing,
+        sites: [usize; 3],
+        z: [f64; 3],
+        levels: u8,
+        is_deep: bool,
+        sag: Sag,
+    ) -> Corners {
         let (mut share, mut depth) = ([0.0; 3], [f64::INFINITY; 3]);
         let mut left = levels;
         while left != 0 {
@@ -211,28 +220,39 @@ impl FootImprint {
     /// The footprint: what it presses, as it stands on the ground on which it was drawn.
     pub(crate) fn print(&self, terrain: &Terrain, motion: &Pose) -> Footprint {
         let followed = self.followed(terrain, motion);
-        let mut parts: Vec<(usize, Pressed, bool)> = Vec::new();
+        let footings = self.footings_after(motion, terrain, PartialLoad::Proportional);
         let mut nodes = Nodes::default();
-        for footing in self.footings_after(motion, terrain, PartialLoad::Proportional) {
+        let stand = |footing| {
             self.stand(footing, motion, &followed, PartialLoad::Proportional, &mut nodes);
-            parts.reserve(footing.sites.len());
-            for (n, (&node, &height)) in footing.sites.on_grid.iter().zip(&nodes.height).enumerate() {
+            std::mem::take(&mut nodes.height)
+        };
+        let heights: Vec<Vec<f64>> = footings.iter().map(stand).collect();
+        // Points of each footing come in the order of the nodes.
+        let mut next = vec![0; footings.len()];
+        let mut print = Footprint::default();
+        let mut space = Vec::new();
+        let node_at = |footing: &Footing, n: usize| footing.sites.on_grid.get(n).copied();
+        while let Some(node) = footings.iter().zip(&next).filter_map(|(of, &n)| node_at(of, n)).min() {
+            let (first, mut presses) = (print.parts.len(), false);
+            for ((footing, heights), n) in footings.iter().zip(&heights).zip(&mut next) {
+                if node_at(footing, *n) != Some(node) {
+                    continue;
+                }
                 for (level, standing) in footing.levels.iter().enumerate() {
-                    if standing.share[n] > 0.0 {
-                        let pressed = Pressed { level, share: standing.share[n], height };
-                        parts.push((node as usize, pressed, height < standing.ground[n]));
+                    if standing.share[*n] > 0.0 {
+                        presses |= heights[*n] < standing.ground[*n];
+                        print.parts.push(Pressed { level, share: standing.share[*n], height: heights[*n] });
                     }
                 }
+                *n += 1;
             }
-        }
-        parts.sort_by_key(|(node, ..)| *node);
-        let mut print = Footprint::default();
-        for cell in parts.chunk_by(|a, b| a.0 == b.0).filter(|cell| cell.iter().any(|part| part.2)) {
-            let (node, first) = (cell[0].0, print.parts.len());
-            print.parts.extend(cell.iter().map(|(_, pressed, _)| *pressed));
-            let parts = first..print.parts.len();
-            let after = terrain.pressed(node, &print.parts[parts.clone()]);
-            print.cells.push(PrintedCell { node, n_before: terrain.loadings()[node], parts, after });
+            if presses {
+                let (node, parts) = (node as usize, first..print.parts.len());
+                let after = terrain.pressed(node, &print.parts[parts.clone()], &mut space);
+                print.cells.push(PrintedCell { node, n_before: terrain.loadings()[node], parts, after });
+            } else {
+                print.parts.truncate(first);
+            }
         }
         print
     }
@@ -291,6 +311,10 @@ impl FootImprint {
         }
         nodes.z.clear();
         nodes.z.extend(undisturbed.iter().zip(&nodes.height).map(|(z_0, height)| z_0 - height));
+        let o = self.reference;
+        let at = x.iter().zip(y).zip(&nodes.height).zip(&nodes.z);
+        nodes.places.clear();
+        nodes.places.extend(at.map(|(((x, y), height), &z)| [x - o.x, y - o.y, height - o.z, z]));
         for (standing, depths) in footing.levels.iter().zip(&mut nodes.depths) {
             standing.depths(&nodes.height, depths);
         }
@@ -329,20 +353,17 @@ impl FootImprint {
         // Slack tracks have answered for theirs.
         let may_follow = footing.layer + 1 < self.layers.len() && !self.tracks.is_empty();
         let mut kinks = NO_KINKS;
-        let [x, y] = [&footing.sites.position[0], &footing.sites.position[1]];
         for pressed in of.pressed.chunks(LANES) {
             for &OnLevels { facet: n, levels } in pressed {
                 let facet = &facets.facets[n as usize];
                 let sites = facet.sites.map(|site| site as usize);
-                let corners = nodes.corners(footing, sites, levels, is_deep, facets.sag(n as usize));
+                let places = sites.map(|site| &nodes.places[site]);
+                let z = places.map(|place| place[3]);
+                let corners = nodes.corners(footing, sites, z, levels, is_deep, facets.sag(n as usize));
                 let on_grid = || sites.map(|site| footing.sites.on_grid[site] as usize);
                 let answer = ground.answer(facet.is_fixed, on_grid, &corners, integration, &mut kinks);
-                let point = |site: usize| {
-                    let height = nodes.height[site];
-                    [x[site] - self.reference.x, y[site] - self.reference.y, height - self.reference.z]
-                };
-                let follows = may_follow && self.tracks.iter().any(|track| track.owns(facet.owner));
-                batch.push(&sites.map(point), &corners, &answer, !follows);
+                let follows = may_follow && self.tracks.iter().any(|track| track.owns(footing.owner(sites)));
+                batch.push(&places.map(|&[x, y, z, _]| [x, y, z]), &corners, &answer, !follows);
             }
             let spacing = self.layers[footing.layer].spacing;
             batch.answer(&integration.sub_triangles, spacing);
@@ -367,11 +388,12 @@ impl FootImprint {
             let Some(polygon) = batch.loaded(n) else { continue };
             let facet = &facets.facets[facet as usize];
             let sites = facet.sites.map(|site| site as usize);
-            let corners = nodes.corners(footing, sites, levels, is_deep, Sag::default());
+            let z = sites.map(|site| nodes.z[site]);
+            let corners = nodes.corners(footing, sites, z, levels, is_deep, Sag::default());
             let share = corners.share.iter().sum::<f64>() / 3.0;
             polygons.push(LoadedPolygon {
                 layer: footing.layer,
-                owner: facet.owner,
+                owner: footing.owner(sites),
                 force: polygon.normal * polygon.lift,
                 position: self.reference + polygon.arm,
                 pressure: if share > 0.0 { polygon.pressure / share } else { 0.0 },

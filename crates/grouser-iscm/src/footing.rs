@@ -12,7 +12,7 @@ pub(crate) use facets::{Facets, OnLevels, Pressing, Sites};
 pub(crate) use span::Span;
 pub(crate) use standing::{Edges, Standing};
 
-use facets::{Facet, owner};
+use facets::Facet;
 
 use crate::imprint::{Imprint, MOST_SAG, spread};
 use crate::levels::MOST_LEVELS;
@@ -194,8 +194,6 @@ impl Footing {
     fn facets_where(&self, layers: &[Imprint], partial: PartialLoad, flag: usize) -> Facets {
         let (imprint, n_x) = (&layers[self.layer], layers[self.layer].n_x);
         let is_curved = self.layer + 1 == layers.len() && partial == PartialLoad::Proportional;
-        let owners = &self.sites.owner;
-        let share = |site: u32| self.levels.iter().map(|level| level.share[site as usize]).sum::<f64>();
         let mut all = Facets::default();
         all.facets.reserve(2 * self.sites.len());
         all.sags.reserve(if is_curved { 2 * self.sites.len() } else { 0 });
@@ -218,8 +216,7 @@ impl Footing {
                         continue;
                     }
                     let sites = half.map(|corner| sites[corner]);
-                    let owner = owner(sites, |site| owners[site as usize], share);
-                    all.facets.push(Facet { sites, owner, levels, is_fixed: a & b & c & FIXED != 0 });
+                    all.facets.push(Facet { sites, levels, is_fixed: a & b & c & FIXED != 0 });
                     if is_curved {
                         let at = half.map(|corner| (i + corner % 2, row + corner / 2));
                         all.sags.push(Sag::new(imprint.sag(at)));
@@ -228,6 +225,20 @@ impl Footing {
             }
         }
         all
+    }
+
+    /// Object of the gear with the largest share of the corners of a triangle between `sites`.
+    pub fn owner(&self, sites: [usize; 3]) -> u16 {
+        let of = |site: usize| self.sites.owner[site];
+        let [a, b, c] = sites.map(of);
+        if a == b && a == c {
+            return a;
+        }
+        let share = |site: usize| self.levels.iter().map(|level| level.share[site]).sum::<f64>();
+        let held = |owner: u16| -> f64 {
+            sites.iter().filter(|site| of(**site) == owner).map(|site| share(*site)).sum()
+        };
+        [b, c].into_iter().fold(a, |best, other| if held(other) > held(best) { other } else { best })
     }
 }
 

@@ -101,18 +101,21 @@ impl Levels {
     }
 
     /// G2: the levels after `parts` pressed on them; `pressed` gives what a level becomes that a part presses, nothing where it stands above.
-    pub fn after(&self, parts: &[Pressed], pressed: impl Fn(&Level, f64) -> Option<Level>) -> Option<Self> {
+    /// `all` is working space.
+    pub fn after(
+        &self,
+        parts: &[Pressed],
+        pressed: impl Fn(&Level, f64) -> Option<Level>,
+        all: &mut Vec<Level>,
+    ) -> Option<Self> {
         let mut left = self.0;
-        let mut all: Vec<Level> = Vec::new();
+        all.clear();
         for part in parts {
             let level = self.get(part.level);
             let share = part.share.min(left[part.level].share);
             if share > SLIVER
                 && let Some(level) = pressed(level, part.height)
             {
-                if all.is_empty() {
-                    all.reserve_exact(parts.len() + MOST_LEVELS);
-                }
                 all.push(Level { share, ..level });
                 left[part.level].share -= share;
             }
@@ -140,7 +143,7 @@ impl Levels {
         }
         let whole: f64 = all.iter().map(|level| level.share).sum();
         let mut levels = [Level::default(); MOST_LEVELS];
-        for (level, of) in levels.iter_mut().zip(all) {
+        for (level, &of) in levels.iter_mut().zip(&*all) {
             *level = Level { share: of.share / whole, ..of };
         }
         Some(Self(levels))
@@ -207,12 +210,12 @@ mod tests {
         };
         let parts =
             [Pressed { level: 2, share: 0.1, height: -0.2 }, Pressed { level: 0, share: 0.3, height: -0.01 }];
-        let after = prints().after(&parts, pressed).unwrap();
+        let after = prints().after(&parts, pressed, &mut Vec::new()).unwrap();
         let volume = |levels: &Levels| levels.0.iter().map(|level| level.share * level.sinkage).sum::<f64>();
         assert!((volume(&after) - volume(&prints()) - 0.1 * (0.2 - 0.07)).abs() < 1e-12, "{after:?}");
         // The two nearest by share and depth are joined: what was left at 0.07 m and what lay at 0.10 m.
         assert!((after.get(2).sinkage - (0.2 * 0.07 + 0.4 * 0.10) / 0.6).abs() < 1e-12, "{after:?}");
         assert!(after.get(0).sinkage == 0.2 && after.get(1).sinkage == 0.13, "{after:?}");
-        assert!(prints().after(&parts[1..], pressed).is_none());
+        assert!(prints().after(&parts[1..], pressed, &mut Vec::new()).is_none());
     }
 }

@@ -237,13 +237,18 @@ impl Terrain {
 
     /// Presses parts of the cell of a node down and lets them spring back where the ground is elastic.
     pub(crate) fn press(&mut self, node: usize, parts: &[Pressed]) {
-        if let Some(after) = self.pressed(node, parts) {
+        if let Some(after) = self.pressed(node, parts, &mut Vec::new()) {
             self.set_pressed(node, &after);
         }
     }
 
-    /// What the cell of a node becomes where it is pressed; nothing where it stays as it is.
-    pub(crate) fn pressed(&self, node: usize, parts: &[Pressed]) -> Option<PressedCell> {
+    /// What the cell of a node becomes where it is pressed; nothing where it stays as it is. `space` is working space.
+    pub(crate) fn pressed(
+        &self,
+        node: usize,
+        parts: &[Pressed],
+        space: &mut Vec<Level>,
+    ) -> Option<PressedCell> {
         if self.is_fixed(node) {
             return None;
         }
@@ -255,7 +260,7 @@ impl Terrain {
                 Level { deepest, sinkage: self.left(node, level.sinkage, deepest, sinkage), ..*level }
             })
         };
-        let levels = self.levels[node].after(parts, pressed)?;
+        let levels = self.levels[node].after(parts, pressed, space)?;
         let deepest = parts.iter().fold(self.deepest[node], |most, part| most.max(z_0 - part.height));
         Some(PressedCell { levels, deepest })
     }

@@ -35,8 +35,6 @@ impl Sites {
 pub(crate) struct Facet {
     /// Its corners.
     pub sites: [u32; 3],
-    /// Object of the gear with the largest share of its corners.
-    pub owner: u16,
     /// One bit for each level of the ground on which it may press.
     pub levels: u8,
     /// Whether all corners lie on a rigid object.
@@ -142,17 +140,4 @@ fn bits(depths: &[Vec<f64>], least: f64, bits: &mut Vec<u8>) {
             *bits |= u8::from(depth >= least && depth > 0.0) << level;
         }
     }
-}
-
-/// The owner of three `sites` that has the largest `share` of them.
-#[inline(always)]
-pub(super) fn owner(sites: [u32; 3], owner_of: impl Fn(u32) -> u16, share: impl Fn(u32) -> f64) -> u16 {
-    let [a, b, c] = sites.map(&owner_of);
-    if a == b && a == c {
-        return a;
-    }
-    let held = |owner: u16| -> f64 {
-        sites.iter().filter(|site| owner_of(**site) == owner).map(|site| share(*site)).sum()
-    };
-    [b, c].into_iter().fold(a, |best, other| if held(other) > held(best) { other } else { best })
 }

@@ -1,6 +1,6 @@
 //! Running gear on one level of the ground.
 
-use super::{CORNER, Footing};
+use super::{CORNER, Footing, NONE};
 use crate::imprint::{ACROSS, AROUND, HARDLY_COVERED};
 use crate::terrain::Terrain;
 
@@ -54,7 +54,6 @@ impl Footing {
     pub(super) fn edges(&self, level: usize, flag: u16, n_x: usize) -> Edges {
         let flag = flag | 1 << (CORNER + level);
         let (site_of, share) = (&self.site_of, &self.levels[level].share);
-        let n_rows = site_of.len() / n_x;
         let mut sites = vec![0; self.nodes.len()];
         let mut n_edges = 0;
         // Without a branch: which points are hardly covered is not to be foreseen.
@@ -64,33 +63,32 @@ impl Footing {
         }
         let mut edges =
             Edges { edges: Vec::with_capacity(n_edges), seen: Vec::with_capacity(AROUND.len() * n_edges) };
+        let ways = AROUND.map(|(di, dj)| dj * n_x as isize + di);
+        let weights = AROUND.map(|(di, dj)| if di == 0 || dj == 0 { 1.0 } else { ACROSS });
+        let n_rows = site_of.len() / n_x;
         for &site in &sites[..n_edges] {
             let (n, own) = (self.nodes[site as usize] as usize, share[site as usize] / HARDLY_COVERED);
             let (i, j) = (n % n_x, n / n_x);
-            let (first, mut sum) = (edges.seen.len(), 0.0);
-            edges.seen.resize(first + AROUND.len(), (0, 0.0));
-            let (seen, mut n_seen) = (&mut edges.seen[first..], 0);
-            let mut see = |near: usize, weight: f64| {
-                let near = site_of[near];
-                let weight = share.get(near as usize).map_or(0.0, |share| share * weight);
-                seen[n_seen] = (near, weight);
+            let around = if i > 0 && j > 0 && i + 1 < n_x && j + 1 < n_rows {
+                ways.map(|way| site_of[n.wrapping_add_signed(way)])
+            } else {
+                AROUND.map(|(di, dj)| match (i.wrapping_add_signed(di), j.wrapping_add_signed(dj)) {
+                    (a, b) if a < n_x && b < n_rows => site_of[b * n_x + a],
+                    _ => NONE,
+                })
+            };
+            let (mut seen, mut n_seen, mut sum) = ([(0, 0.0); AROUND.len()], 0, 0.0);
+            for k in 0..AROUND.len() {
+                let weight = share.get(around[k] as usize).map_or(0.0, |share| share * weights[k]);
+                seen[n_seen % AROUND.len()] = (around[k], weight);
                 n_seen += usize::from(weight > 0.0);
                 sum += weight;
-            };
-            let is_inside = i > 0 && j > 0 && i + 1 < n_x && j + 1 < n_rows;
-            for (di, dj) in AROUND {
-                let weight = if di == 0 || dj == 0 { 1.0 } else { ACROSS };
-                let (a, b) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
-                if is_inside || (a < n_x && b < n_rows) {
-                    see(b * n_x + a, weight);
-                }
             }
-            let last = if sum > 0.0 { first + n_seen } else { first };
-            edges.seen.truncate(last);
             if sum > 0.0 {
-                let rest = (1.0 - own) / sum;
-                edges.seen[first..].iter_mut().for_each(|seen| seen.1 *= rest);
-                edges.edges.push(Edge { site, own, seen: first as u32..last as u32 });
+                let (first, rest) = (edges.seen.len(), (1.0 - own) / sum);
+                edges.seen.extend(seen.map(|(near, weight)| (near, weight * rest)));
+                edges.seen.truncate(first + n_seen);
+                edges.edges.push(Edge { site, own, seen: first as u32..(first + n_seen) as u32 });
             }
         }
         edges

@@ -128,36 +128,68 @@ fn triangles_far_above_the_ground_answer_once_the_gear_sinks_onto_them() {
     assert!(foot.footings.len() == 1 && foot.footings[0].layer == 1);
 }
 
+/// Five shoes with a grouser each and a wheel above them: layers with the first shoe at `first` and links at a height of `z` \[m\].
+fn five_shoes(terrain: &Terrain, first: f64, z: f64) -> Vec<Imprint> {
+    let (partial, pitch) = (PartialLoad::Proportional, 0.104);
+    let plate = Plate { along: [-0.0416, 0.0416], across: [-0.3, 0.3], depth: 0.03 };
+    let grouser = Plate { along: [-0.02, 0.02], across: [-0.3, 0.3], depth: 0.06 };
+    let blank = || Imprint::new(terrain.grid(), [-0.2, -0.4], [1.3, 0.4], 1.0, partial);
+    let (mut grousers, mut shoes, mut wheel) = (blank(), blank(), blank());
+    for k in 0..5 {
+        let at = Pose::translation(first + f64::from(k) * pitch, 0.003, z);
+        grousers.draw_plate(&at, &grouser, 0);
+        shoes.draw_plate(&at, &plate, 0);
+    }
+    let above = Plate { along: [0.0, 4.0 * pitch], across: [-0.25, 0.25], depth: 0.01 };
+    wheel.draw_plate(&Pose::translation(first, 0.003, z), &above, 1);
+    let mut layers = vec![grousers, shoes, wheel];
+    layers.iter_mut().for_each(|layer| layer.carry_edges(terrain.grid()));
+    layers
+}
+
+#[test]
+fn gear_close_to_the_ground_answers_and_prints_as_all_of_it_does() {
+    let law = PressureLaw::Linear(Linear { stiffness: 1e6 });
+    let partial = PartialLoad::Proportional;
+    let grid = HeightGrid::covering([-0.5, -0.5], [2.0, 1.0], 0.04, |x, _| 0.02 * (9.0 * x).sin()).unwrap();
+    let array = PressureArray::new(&law, 0.005, 0.5).unwrap();
+    let mut terrain = Terrain::new(grid, PressureField::uniform(array)).unwrap();
+    let integration = Integration { sub_triangles: SubTriangles::new(4), partial };
+    let mut both_sizes = [0, 0];
+    for step in 0..40 {
+        let layers = five_shoes(&terrain, 0.013 + 7e-3 * f64::from(step), -0.03 - 5e-4 * f64::from(step % 7));
+        let [close, far] = [Reach::Close, Reach::Far]
+            .map(|reach| FootImprint::new(layers.clone(), Vec3::zeros(), &terrain, partial, reach));
+        for (sum, foot) in both_sizes.iter_mut().zip([&close, &far]) {
+            *sum += foot.footings.iter().map(|footing| footing.sites.len()).sum::<usize>();
+        }
+        let motion = Pose::translation(0.0, 0.0, -1e-3 * f64::from(step % 4));
+        let [a, b] = [&close, &far].map(|foot| foot.load(&terrain, &motion, &integration));
+        assert!((a.wrench.force - b.wrench.force).norm() <= 1e-9 * b.wrench.force.norm(), "{a:?}\n{b:?}");
+        assert!((a.stiffness - b.stiffness).norm() <= 1e-9 * b.stiffness.norm(), "{a:?}\n{b:?}");
+        let mut other = terrain.clone();
+        close.stamp(&mut terrain, &motion);
+        far.stamp(&mut other, &motion);
+        let differs = |(a, b): (&f64, &f64)| (a - b).abs() > 1e-12;
+        assert!(!terrain.sinkage().iter().zip(other.sinkage()).any(differs), "prints differ in step {step}");
+    }
+    assert!(both_sizes[0] < both_sizes[1], "{both_sizes:?}");
+}
+
 #[test]
 fn force_has_no_jump_as_shoes_move_over_the_prints_of_others() {
     let law = PressureLaw::Linear(Linear { stiffness: 1e6 });
-    let (spacing, partial, pitch) = (0.04, PartialLoad::Proportional, 0.104);
-    let plate = Plate { along: [-0.0416, 0.0416], across: [-0.3, 0.3], depth: 0.03 };
-    let grouser = Plate { along: [-0.02, 0.02], across: [-0.3, 0.3], depth: 0.06 };
-    let grid = HeightGrid::covering([-0.5, -0.5], [2.0, 1.0], spacing, |_, _| 0.0).unwrap();
+    let partial = PartialLoad::Proportional;
+    let grid = HeightGrid::covering([-0.5, -0.5], [2.0, 1.0], 0.04, |_, _| 0.0).unwrap();
     let array = PressureArray::new(&law, 0.005, 0.5).unwrap();
     let mut terrain = Terrain::new(grid, PressureField::uniform(array)).unwrap();
-    let layers = |terrain: &Terrain, first: f64, z: f64| {
-        let blank = || Imprint::new(terrain.grid(), [-0.2, -0.4], [1.3, 0.4], 1.0, partial);
-        let (mut grousers, mut shoes, mut wheel) = (blank(), blank(), blank());
-        for k in 0..5 {
-            let at = Pose::translation(first + f64::from(k) * pitch, 0.003, z);
-            grousers.draw_plate(&at, &grouser, 0);
-            shoes.draw_plate(&at, &plate, 0);
-        }
-        let above = Plate { along: [0.0, 4.0 * pitch], across: [-0.25, 0.25], depth: 0.01 };
-        wheel.draw_plate(&Pose::translation(first, 0.003, z), &above, 1);
-        let mut layers = vec![grousers, shoes, wheel];
-        layers.iter_mut().for_each(|layer| layer.carry_edges(terrain.grid()));
-        layers
-    };
-    FootImprint::new(layers(&terrain, 0.013, -0.05), Vec3::zeros(), &terrain, partial, Reach::Close)
+    FootImprint::new(five_shoes(&terrain, 0.013, -0.05), Vec3::zeros(), &terrain, partial, Reach::Close)
         .stamp(&mut terrain, &Pose::identity());
     let integration = Integration { sub_triangles: SubTriangles::new(4), partial };
     // 5 mm above the prints: loaded on what the first shoes left higher.
     let forces: Vec<f64> = (0..=2000)
         .map(|k| {
-            let layers = layers(&terrain, 0.013 + 2e-5 * f64::from(k), -0.045);
+            let layers = five_shoes(&terrain, 0.013 + 2e-5 * f64::from(k), -0.045);
             let foot = FootImprint::new(layers, Vec3::zeros(), &terrain, partial, Reach::Close);
             foot.load(&terrain, &Pose::identity(), &integration).wrench.force.z
         })
