@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         rim_width: rim_width.parse()?,
         wall_thickness: 0.016,
         groove_depth: 0.015,
-        pattern: LugPattern::Alternating { count: 20 },
+        pattern: LugPattern::Alternating { count: 20, land: 0.5 },
         n_elements: n_elements.parse()?,
     };
     let mut mesh = tread.mesh()?;

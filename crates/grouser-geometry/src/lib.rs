@@ -40,6 +40,7 @@ pub mod grey_image;
 mod height_grid;
 mod height_shape;
 pub mod lathe;
+mod lug_pattern;
 pub mod mesh_doctor;
 mod mesh_file;
 pub mod obj;
@@ -59,6 +60,7 @@ pub mod xyz_text;
 pub use bounding_box::BoundingBox;
 pub use height_grid::{GridError, HeightGrid};
 pub use height_shape::HeightShape;
+pub use lug_pattern::LugPattern;
 pub use mesh_file::MeshFileError;
 pub use nalgebra;
 pub use quality::QualityReport;
@@ -67,7 +69,7 @@ pub use structured_mesh::{Lattice, box_mesh, cylinder, hollow_cylinder};
 pub use surface::{SolidProperties, TriangleSurface};
 pub use surface_topology::{Edge, EdgeUse, SurfaceTopology};
 pub use tetrahedral_mesh::{ElementOrder, Facet, MeshError, TetrahedralMesh};
-pub use tire_tread::{LugPattern, TireError, TireSize, TireTread};
+pub use tire_tread::{TireError, TireSize, TireTread};
 pub use wrench::Wrench;
 
 /// Vector or point in space [m, or the unit of the quantity].

@@ -13,7 +13,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Facet, Lattice, TetrahedralMesh, Vec3};
+use crate::lug_pattern::Pitch;
+use crate::{Facet, Lattice, LugPattern, TetrahedralMesh, Vec3};
 
 /// Nominal dimensions of a tire.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,18 +25,6 @@ pub struct TireSize {
     pub aspect_ratio: f64,
     /// Diameter of the rim [m].
     pub rim_diameter: f64,
-}
-
-/// Pattern of the lugs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum LugPattern {
-    /// No lugs: a closed crown of the same outer radius.
-    Smooth,
-    /// Lugs on the left and on the right half, shifted by half a pitch.
-    Alternating {
-        /// Lugs on each half around the tire.
-        count: usize,
-    },
 }
 
 /// What a tread looks like; see [`TireTread::mesh`].
@@ -94,6 +83,15 @@ pub enum TireError {
         /// Smallest width that is accepted [m].
         least: f64,
     },
+    /// Lugs that cover nothing or everything.
+    #[error(
+        "lugs cover {land} of the pitch: expected between 0 and 1, road tires near 0.7, field tires near 0.3; usual cause: per cent; without \
+         grooves it is a smooth tread"
+    )]
+    Land {
+        /// Length of a lug over the pitch.
+        land: f64,
+    },
     /// Too few elements for the pattern.
     #[error(
         "{n_elements} tetrahedra are too few for this tread: expected at least {least}, four cells around the tire for each lug; ask for more elements or fewer lugs"
@@ -115,7 +113,7 @@ const LUG_CELLS: usize = 1;
 const CROWN_SHARE: f64 = 0.8;
 
 /// How a tread is divided.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Cells {
     /// Along one side wall.
     side: usize,
@@ -125,6 +123,8 @@ struct Cells {
     around: usize,
     /// Lugs on each half; 1 where there are none.
     n_lugs: usize,
+    /// Length of a lug over the pitch.
+    land: f64,
 }
 
 impl TireSize {
@@ -169,15 +169,10 @@ impl TireTread {
         }
         let section = self.cells()?;
         let Cells { side, crown, around, .. } = section;
+        let pitch = Pitch::new(around / (2 * section.n_lugs), section.land);
         let is_lug = |s: usize, a: usize| {
             let Some(place) = s.checked_sub(side).filter(|&place| place < crown) else { return false };
-            match self.pattern {
-                LugPattern::Smooth => true,
-                LugPattern::Alternating { .. } => {
-                    let half_pitch = around / (2 * section.n_lugs);
-                    (a / half_pitch + usize::from(place >= crown / 2)).is_multiple_of(2)
-                }
-            }
+            self.pattern == LugPattern::Smooth || pitch.is_lug(a, place >= crown / 2)
         };
         let along = 2 * side + crown;
         let lattice = Lattice { cells: [along, around, WALL_CELLS + LUG_CELLS], is_closed: true };
@@ -189,7 +184,7 @@ impl TireTread {
                 wall + groove * (layer - WALL_CELLS) as f64 / LUG_CELLS as f64
             };
             let [radius, y] = self.section(size, [side, crown], s, depth);
-            let angle = TAU * (a % around) as f64 / around as f64;
+            let angle = TAU * pitch.place(a % around) / around as f64;
             Vec3::new(radius * angle.cos(), y, radius * angle.sin())
         };
         let mut mesh = lattice.mesh(keep, map);
@@ -199,10 +194,12 @@ impl TireTread {
 
     /// The division for the number of elements asked for.
     fn cells(&self) -> Result<Cells, TireError> {
-        // Half of the crown carries lugs, the whole of a smooth one.
-        let (n_lugs, share) = match self.pattern {
-            LugPattern::Smooth => (1, 1.0),
-            LugPattern::Alternating { count } => (count.max(1), 0.5),
+        let (n_lugs, land, share) = match self.pattern {
+            LugPattern::Smooth => (1, 0.5, 1.0),
+            LugPattern::Alternating { land, .. } if !(land > 0.0 && land < 1.0) => {
+                return Err(TireError::Land { land });
+            }
+            LugPattern::Alternating { count, land } => (count.max(1), land, land),
         };
         // Four cells for each pitch at least, and whole half-pitches.
         let step = 4 * n_lugs;
@@ -213,7 +210,7 @@ impl TireTread {
             let around =
                 ((self.n_elements as f64 / per_slice(cells) / step as f64).round() as usize).max(1) * step;
             let [side, crown] = cells;
-            (around as f64 * per_slice(cells), Cells { side, crown, around, n_lugs })
+            (around as f64 * per_slice(cells), Cells { side, crown, around, n_lugs, land })
         });
         // The finest that is close enough, or else the closest.
         let missed = |n: f64| (n / self.n_elements as f64).ln().abs();
@@ -298,7 +295,8 @@ mod tests {
 
     #[test]
     fn treads_are_sound_meshes_of_about_the_size_asked_for() {
-        for pattern in [LugPattern::Smooth, LugPattern::Alternating { count: 20 }] {
+        for land in [None, Some(0.25), Some(0.5), Some(0.7)] {
+            let pattern = land.map_or(LugPattern::Smooth, |land| LugPattern::Alternating { count: 20, land });
             let mesh = tread(pattern).mesh().unwrap();
             mesh.validate().unwrap();
             let n = mesh.n_elements() as f64;
@@ -317,7 +315,7 @@ mod tests {
 
     #[test]
     fn lugs_alternate_between_the_halves() {
-        let mesh = tread(LugPattern::Alternating { count: 20 }).mesh().unwrap();
+        let mesh = tread(LugPattern::Alternating { count: 20, land: 0.5 }).mesh().unwrap();
         let volume = |is_left: bool| -> f64 {
             (0..mesh.n_elements())
                 .filter(|&e| mesh.region_of_element[e] == 1)
@@ -347,9 +345,11 @@ mod tests {
         let mut too_thick = tread(LugPattern::Smooth);
         too_thick.wall_thickness = 0.06;
         assert!(matches!(too_thick.mesh(), Err(TireError::Thickness { .. })));
-        let mut too_coarse = tread(LugPattern::Alternating { count: 20 });
+        let mut too_coarse = tread(LugPattern::Alternating { count: 20, land: 0.5 });
         too_coarse.n_elements = 500;
         assert!(matches!(too_coarse.mesh(), Err(TireError::TooFewElements { .. })));
+        let covered = tread(LugPattern::Alternating { count: 20, land: 25.0 });
+        assert!(covered.mesh().unwrap_err().to_string().contains("expected between 0 and 1"));
         let mut on_inches = tread(LugPattern::Smooth);
         on_inches.rim_width = 5.0;
         assert!(on_inches.mesh().unwrap_err().to_string().contains("expected 0.1118 to 0.165 m"));

@@ -44,7 +44,7 @@ pub struct Tire {
 }
 
 /// Pattern of a tread.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Tread {
     /// A closed crown of the same outer radius.
     Smooth,
@@ -52,6 +52,9 @@ pub enum Tread {
     Alternating {
         /// Lugs on each half around the tire.
         lugs: usize,
+        /// Length of a lug around the tire over the pitch, above 0 and below 1: a road tire's is near 0.7, a field tire's near 0.3.
+        #[serde(default = "half")]
+        land: f64,
     },
 }
 
@@ -144,4 +147,7 @@ pub enum Vertical {
 
 fn quarter() -> f64 {
     0.25
+}
+fn half() -> f64 {
+    0.5
 }

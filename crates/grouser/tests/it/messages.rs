@@ -185,6 +185,7 @@ fn wrong_tires_are_refused_with_line_and_remedy() {
     const TIRE: &str = include_str!("../../../../scenarios/tire.ron");
     let cases = [
         ("gap_m: 0.001", "gap_m: -0.02", "the tire starts inside the bed"),
+        ("Alternating(lugs: 20)", "Alternating(lugs: 20, land: 50)", "lugs cover 50 of the pitch"),
         ("size: \"165/65R13\"", "size: \"165x65\"", "is not understood"),
         ("rim_width_m: 0.127", "rim_width_m: 5.0", "rim width 5 m"),
         ("n_elements: 24000", "n_elements: 900", "too few"),

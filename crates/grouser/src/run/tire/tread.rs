@@ -196,7 +196,7 @@ pub fn shape(tire: &Tire) -> TireTread {
         groove_depth: tire.groove_depth_m,
         pattern: match tire.tread {
             Pattern::Smooth => LugPattern::Smooth,
-            Pattern::Alternating { lugs } => LugPattern::Alternating { count: lugs },
+            Pattern::Alternating { lugs, land } => LugPattern::Alternating { count: lugs, land },
         },
         n_elements: tire.n_elements,
     }

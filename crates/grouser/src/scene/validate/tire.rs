@@ -49,7 +49,7 @@ pub fn validate(check: &mut Check, scenario: &Scenario, bed: &Grains, (tire, rol
     let slip = roll.slip;
     let expected = "(ω R − v)/(ω R) in (−1, 1)";
     check.require("motion.slip", slip, slip > -1.0 && slip < 1.0, expected, "per cent");
-    if let Tread::Alternating { lugs: 0 } = tire.tread {
+    if let Tread::Alternating { lugs: 0, .. } = tire.tread {
         check.fail("tool.tread", "a lugged tread without lugs", "at least one, or Smooth", "");
     }
     let damping = tire.damping_s;
@@ -78,6 +78,7 @@ fn mesh(check: &mut Check, scenario: &Scenario, tire: &Tire) {
     let path = |error: &TireError| match error {
         TireError::SizeCode { .. } => "tool.size",
         TireError::RimWidth { .. } => "tool.rim_width_m",
+        TireError::Land { .. } => "tool.tread",
         TireError::Thickness { .. } => "tool.wall_thickness_m",
         TireError::TooFewElements { .. } => "tool.n_elements",
     };
