@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             n *= 2;
         }
         for n_elements in [6_000, 24_000, 72_000] {
-            let pattern = LugPattern::Alternating { count: 20 };
+            let pattern = LugPattern::Alternating { count: 20, land: 0.5 };
             let size = "165/65R13".to_owned();
             let tread = TireTread {
                 size,
