@@ -88,6 +88,7 @@ pub struct FootImprint {
     far: OnceLock<Vec<Footing>>,
     /// Bounds how far it sinks.
     span: Span,
+    partial: PartialLoad,
     /// The lines of the relationship where it is the same everywhere.
     prepared: Option<Prepared>,
 }
@@ -151,16 +152,25 @@ impl FootImprint {
         let field = terrain.field();
         let prepared =
             (!field.is_per_node()).then(|| Prepared::new(field.of_node(0), 1.0 / field.resolution()));
-        Self { layers, reference, tracks: Vec::new(), footings, far: OnceLock::new(), span, prepared }
+        Self {
+            layers,
+            reference,
+            tracks: Vec::new(),
+            footings,
+            far: OnceLock::new(),
+            span,
+            partial,
+            prepared,
+        }
     }
 
     /// What can press after the gear moved by `motion` since it was drawn over the same `terrain`.
-    fn footings_after(&self, motion: &Pose, terrain: &Terrain, partial: PartialLoad) -> &[Footing] {
+    fn footings_after(&self, motion: &Pose, terrain: &Terrain) -> &[Footing] {
         let turn = motion.rotation.to_rotation_matrix().matrix() - Matrix3::identity();
         if !self.tracks.is_empty() || self.span.sinks(&turn, &motion.translation.vector) < CLOSE {
             return &self.footings;
         }
-        self.far.get_or_init(|| Footing::of(&self.layers, terrain, partial, Reach::Far).0)
+        self.far.get_or_init(|| Footing::of(&self.layers, terrain, self.partial, Reach::Far).0)
     }
 
     /// Force of the `terrain` on the gear after it moved by `motion` since the imprints were drawn.
@@ -192,7 +202,7 @@ impl FootImprint {
         let followed = self.followed(terrain, motion);
         let ground = Ground::new(terrain, self.prepared.as_ref());
         let (mut nodes, mut found, mut batch) = (Nodes::default(), Pressing::default(), Batch::new());
-        for footing in self.footings_after(motion, terrain, integration.partial) {
+        for footing in self.footings_after(motion, terrain) {
             self.stand(footing, motion, &followed, integration.partial, &mut nodes);
             let ready = footing.ready(&self.layers, integration.partial, nodes.sunk);
             for (edges, depths) in ready.edges.iter().zip(&mut nodes.depths) {
@@ -220,7 +230,7 @@ impl FootImprint {
     /// The footprint: what it presses, as it stands on the ground on which it was drawn.
     pub(crate) fn print(&self, terrain: &Terrain, motion: &Pose) -> Footprint {
         let followed = self.followed(terrain, motion);
-        let footings = self.footings_after(motion, terrain, PartialLoad::Proportional);
+        let footings = self.footings_after(motion, terrain);
         let mut nodes = Nodes::default();
         let stand = |footing| {
             self.stand(footing, motion, &followed, PartialLoad::Proportional, &mut nodes);
