@@ -2,6 +2,8 @@
 //!
 //! Steps as in `docs/theory/iscm.md`, F1 to F5.
 
+mod footprint;
+
 use std::sync::OnceLock;
 
 use grouser_geometry::{Pose, Vec3};
@@ -10,12 +12,12 @@ use nalgebra::{Matrix3, Matrix6};
 use crate::batch::{Batch, LANES};
 use crate::footing::{CLOSE, Facets, Footing, OnLevels, Pressing, Reach, Sites, Span, Standing};
 use crate::imprint::{Imprint, MOST_SAG};
-use crate::levels::{MOST_LEVELS, Pressed};
+use crate::levels::MOST_LEVELS;
 use crate::polygon::{Answer, Corners, PartialLoad, Sag, SubTriangles, integrate};
 use crate::response::{
     KINKS, Kink, NO_KINKS, OneArray, Prepared, PreparedArray, Reloaded, Response, Stiff, ThreeArrays,
 };
-use crate::terrain::{PressedCell, Terrain, Unloading};
+use crate::terrain::{Terrain, Unloading};
 use crate::track::{DrawnTrack, Followed};
 
 /// How forces are integrated.
@@ -222,51 +224,6 @@ impl FootImprint {
         load
     }
 
-    /// G2: leaves the footprint; each part of the gear presses the levels that it stands on down to its underside.
-    pub fn stamp(&self, terrain: &mut Terrain, motion: &Pose) {
-        self.print(terrain, motion).leave(terrain);
-    }
-
-    /// The footprint: what it presses, as it stands on the ground on which it was drawn.
-    pub(crate) fn print(&self, terrain: &Terrain, motion: &Pose) -> Footprint {
-        let followed = self.followed(terrain, motion);
-        let footings = self.footings_after(motion, terrain);
-        let mut nodes = Nodes::default();
-        let stand = |footing| {
-            self.stand(footing, motion, &followed, PartialLoad::Proportional, &mut nodes);
-            std::mem::take(&mut nodes.height)
-        };
-        let heights: Vec<Vec<f64>> = footings.iter().map(stand).collect();
-        // Points of each footing come in the order of the nodes.
-        let mut next = vec![0; footings.len()];
-        let mut print = Footprint::default();
-        let mut space = Vec::new();
-        let node_at = |footing: &Footing, n: usize| footing.sites.on_grid.get(n).copied();
-        while let Some(node) = footings.iter().zip(&next).filter_map(|(of, &n)| node_at(of, n)).min() {
-            let (first, mut presses) = (print.parts.len(), false);
-            for ((footing, heights), n) in footings.iter().zip(&heights).zip(&mut next) {
-                if node_at(footing, *n) != Some(node) {
-                    continue;
-                }
-                for (level, standing) in footing.levels.iter().enumerate() {
-                    if standing.share[*n] > 0.0 {
-                        presses |= heights[*n] < standing.ground[*n];
-                        print.parts.push(Pressed { level, share: standing.share[*n], height: heights[*n] });
-                    }
-                }
-                *n += 1;
-            }
-            if presses {
-                let (node, parts) = (node as usize, first..print.parts.len());
-                let after = terrain.pressed(node, &print.parts[parts.clone()], &mut space);
-                print.cells.push(PrintedCell { node, n_before: terrain.loadings()[node], parts, after });
-            } else {
-                print.parts.truncate(first);
-            }
-        }
-        print
-    }
-
     /// Rest of the slack tracks after the body moved.
     fn followed(&self, terrain: &Terrain, motion: &Pose) -> Followed {
         let mut followed = Followed::default();
@@ -422,35 +379,6 @@ struct Triangles<'a> {
     pressed: &'a [OnLevels],
     /// Whether they are deeper at all corners than contact builds up.
     is_deep: bool,
-}
-
-/// What gear presses, cell by cell in the order of the nodes.
-#[derive(Default)]
-pub(crate) struct Footprint {
-    cells: Vec<PrintedCell>,
-    parts: Vec<Pressed>,
-}
-
-/// A cell of the terrain, the parts of the gear in it, and what becomes of it if nothing presses it before.
-struct PrintedCell {
-    node: usize,
-    /// Footprints that had deepened it then.
-    n_before: u32,
-    parts: std::ops::Range<usize>,
-    after: Option<PressedCell>,
-}
-
-impl Footprint {
-    /// Presses.
-    pub fn leave(&self, terrain: &mut Terrain) {
-        for PrintedCell { node, n_before, parts, after } in &self.cells {
-            if terrain.loadings()[*node] == *n_before {
-                after.iter().for_each(|after| terrain.set_pressed(*node, after));
-            } else {
-                terrain.press(*node, &self.parts[parts.clone()]); // Another foot stands here too.
-            }
-        }
-    }
 }
 
 /// What presses back.
