@@ -117,15 +117,8 @@ struct Nodes {
 impl Nodes {
     /// Corners of a triangle between three `sites` of a footing where it presses on `levels`: on one, or deep in all of them.
     #[inline(always)]
-    fn corners(
-        &self,
-        footing: &Footing,
-        sites: [usize; 3],
-        z: [f64; 3],
-        levels: u8,
-        is_deep: bool,
-        sag: Sag,
-    ) -> Corners {
+    fn corners(&self, footing: &Footing, sites: [usize; 3], levels: u8, is_deep: bool, sag: Sag) -> Corners {
+        let z = sites.map(|site| self.places[site][3]);
         let (mut share, mut depth) = ([0.0; 3], [f64::INFINITY; 3]);
         let mut left = levels;
         while left != 0 {
@@ -324,13 +317,12 @@ impl FootImprint {
             for &OnLevels { facet: n, levels } in pressed {
                 let facet = &facets.facets[n as usize];
                 let sites = facet.sites.map(|site| site as usize);
-                let places = sites.map(|site| &nodes.places[site]);
-                let z = places.map(|place| place[3]);
-                let corners = nodes.corners(footing, sites, z, levels, is_deep, facets.sag(n as usize));
+                let corners = nodes.corners(footing, sites, levels, is_deep, facets.sag(n as usize));
                 let on_grid = || sites.map(|site| footing.sites.on_grid[site] as usize);
                 let answer = ground.answer(facet.is_fixed, on_grid, &corners, integration, &mut kinks);
                 let follows = may_follow && self.tracks.iter().any(|track| track.owns(footing.owner(sites)));
-                batch.push(&places.map(|&[x, y, z, _]| [x, y, z]), &corners, &answer, !follows);
+                let points = sites.map(|site| nodes.places[site]).map(|[x, y, z, _]| [x, y, z]);
+                batch.push(&points, &corners, &answer, !follows);
             }
             let spacing = self.layers[footing.layer].spacing;
             batch.answer(&integration.sub_triangles, spacing);
@@ -355,8 +347,7 @@ impl FootImprint {
             let Some(polygon) = batch.loaded(n) else { continue };
             let facet = &facets.facets[facet as usize];
             let sites = facet.sites.map(|site| site as usize);
-            let z = sites.map(|site| nodes.z[site]);
-            let corners = nodes.corners(footing, sites, z, levels, is_deep, Sag::default());
+            let corners = nodes.corners(footing, sites, levels, is_deep, Sag::default());
             let share = corners.share.iter().sum::<f64>() / 3.0;
             polygons.push(LoadedPolygon {
                 layer: footing.layer,

@@ -69,7 +69,7 @@ struct Parts {
     rows: [usize; 2],
 }
 
-/// One bit for each level: whether gear within reach of it stands at a node or beside it.
+/// One bit for each level: whether gear stands on it at a node that is within reach or at most two nodes beside what is.
 const NEAR: u16 = (1 << MOST_LEVELS) - 1;
 /// Where the bits begin that tell whether it does once the gear has sunk by [`CLOSE`].
 const IS_CLOSE: usize = MOST_LEVELS;
@@ -188,7 +188,8 @@ impl Footing {
         })
     }
 
-    /// All triangles with a corner near the ground and one that has a flag, both on the same level; `flag` is where its bits begin.
+    /// All triangles between points with a corner that stands near the ground and one that has a flag, both on the same level; `flag` is where
+    /// its bits begin.
     ///
     /// Wheels, the last layer of all, have a curved underside; shoes are flat.
     fn facets_where(&self, layers: &[Imprint], partial: PartialLoad, flag: usize) -> Facets {

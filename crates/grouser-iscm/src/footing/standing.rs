@@ -80,6 +80,7 @@ impl Footing {
             let (mut seen, mut n_seen, mut sum) = ([(0, 0.0); AROUND.len()], 0, 0.0);
             for k in 0..AROUND.len() {
                 let weight = share.get(around[k] as usize).map_or(0.0, |share| share * weights[k]);
+                // Never more than there are; so no bound is checked.
                 seen[n_seen % AROUND.len()] = (around[k], weight);
                 n_seen += usize::from(weight > 0.0);
                 sum += weight;

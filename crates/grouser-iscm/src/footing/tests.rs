@@ -9,9 +9,15 @@ use crate::polygon::{PartialLoad, SubTriangles};
 use crate::pressure::{Linear, PressureArray, PressureField, PressureLaw};
 use crate::terrain::Terrain;
 
+/// Ground of 1 MPa/m with points `spacing` apart and its surface at `height` \[m\].
+fn linear_ground(spacing: f64, height: impl Fn(f64, f64) -> f64) -> Terrain {
+    let law = PressureLaw::Linear(Linear { stiffness: 1e6 });
+    let grid = HeightGrid::covering([-0.5, -0.5], [2.0, 1.0], spacing, height).unwrap();
+    Terrain::new(grid, PressureField::uniform(PressureArray::new(&law, 0.005, 0.5).unwrap())).unwrap()
+}
+
 /// Mean over places of force on flat shoes with a grouser each that stand in their own print, over the exact one, less one \[-\].
 fn error(spacing: f64) -> f64 {
-    let law = PressureLaw::Linear(Linear { stiffness: 1e6 });
     let (partial, n_shoes, pitch) = (PartialLoad::Proportional, 10, 0.104);
     let plate = Plate { along: [-0.0416, 0.0416], across: [-0.3, 0.3], depth: 0.03 };
     let grouser = Plate { along: [-0.02, 0.02], across: [-0.3, 0.3], depth: 0.06 };
@@ -19,9 +25,7 @@ fn error(spacing: f64) -> f64 {
     let exact = f64::from(n_shoes) * 0.6 * 1e6 * (0.04 * z_grouser + 0.0432 * z_plate);
     let places = 16;
     let mean = (0..places).map(|place| {
-        let grid = HeightGrid::covering([-0.5, -0.5], [2.0, 1.0], spacing, |_, _| 0.0).unwrap();
-        let array = PressureArray::new(&law, 0.005, 0.5).unwrap();
-        let mut terrain = Terrain::new(grid, PressureField::uniform(array)).unwrap();
+        let mut terrain = linear_ground(spacing, |_, _| 0.0);
         let blank = || Imprint::new(terrain.grid(), [-0.2, -0.4], [1.3, 0.4], 1.0, partial);
         let (mut grousers, mut shoes) = (blank(), blank());
         for k in 0..n_shoes {
@@ -52,7 +56,6 @@ fn shoes_are_carried_beside_the_prints_of_their_grousers() {
 /// Mean over places of the force on plates 2.08 cm apart and on a wheel above these gaps, which stand in their own print, over the exact
 /// ones, less one; and of the force left on all of it 1 mm higher, over the exact one before \[-\].
 fn errors_of_gaps(spacing: f64) -> [f64; 3] {
-    let law = PressureLaw::Linear(Linear { stiffness: 1e6 });
     let (partial, n_shoes, pitch) = (PartialLoad::Proportional, 10, 0.104);
     let plate = Plate { along: [-0.0416, 0.0416], across: [-0.3, 0.3], depth: 0.0 };
     let (z_plate, z_wheel) = (0.10, 0.07);
@@ -62,9 +65,7 @@ fn errors_of_gaps(spacing: f64) -> [f64; 3] {
     let places = 16;
     let mut sums = [0.0; 3];
     for place in 0..places {
-        let grid = HeightGrid::covering([-0.5, -0.5], [2.0, 1.0], spacing, |_, _| 0.0).unwrap();
-        let array = PressureArray::new(&law, 0.005, 0.5).unwrap();
-        let mut terrain = Terrain::new(grid, PressureField::uniform(array)).unwrap();
+        let mut terrain = linear_ground(spacing, |_, _| 0.0);
         let blank = || Imprint::new(terrain.grid(), [-0.2, -0.4], [1.3, 0.4], 1.0, partial);
         let (mut shoes, mut wheel) = (blank(), blank());
         let first = f64::from(place) * spacing / f64::from(places);
@@ -103,11 +104,8 @@ fn wheels_stand_on_the_ground_between_plates() {
 
 #[test]
 fn triangles_far_above_the_ground_answer_once_the_gear_sinks_onto_them() {
-    let law = PressureLaw::Linear(Linear { stiffness: 1e6 });
     let partial = PartialLoad::Proportional;
-    let grid = HeightGrid::covering([-0.5, -0.5], [2.0, 1.0], 0.04, |_, _| 0.0).unwrap();
-    let array = PressureArray::new(&law, 0.005, 0.5).unwrap();
-    let terrain = Terrain::new(grid, PressureField::uniform(array)).unwrap();
+    let terrain = linear_ground(0.04, |_, _| 0.0);
     let blank = || Imprint::new(terrain.grid(), [-0.2, -0.4], [1.3, 0.4], 1.0, partial);
     let (mut low, mut high) = (blank(), blank());
     // Wheels, 1 mm in the ground, and plates 2 cm above it.
@@ -149,11 +147,8 @@ fn five_shoes(terrain: &Terrain, first: f64, z: f64) -> Vec<Imprint> {
 
 #[test]
 fn gear_close_to_the_ground_answers_and_prints_as_all_of_it_does() {
-    let law = PressureLaw::Linear(Linear { stiffness: 1e6 });
     let partial = PartialLoad::Proportional;
-    let grid = HeightGrid::covering([-0.5, -0.5], [2.0, 1.0], 0.04, |x, _| 0.02 * (9.0 * x).sin()).unwrap();
-    let array = PressureArray::new(&law, 0.005, 0.5).unwrap();
-    let mut terrain = Terrain::new(grid, PressureField::uniform(array)).unwrap();
+    let mut terrain = linear_ground(0.04, |x, _| 0.02 * (9.0 * x).sin());
     let integration = Integration { sub_triangles: SubTriangles::new(4), partial };
     let mut both_sizes = [0, 0];
     for step in 0..40 {
@@ -178,11 +173,8 @@ fn gear_close_to_the_ground_answers_and_prints_as_all_of_it_does() {
 
 #[test]
 fn force_has_no_jump_as_shoes_move_over_the_prints_of_others() {
-    let law = PressureLaw::Linear(Linear { stiffness: 1e6 });
     let partial = PartialLoad::Proportional;
-    let grid = HeightGrid::covering([-0.5, -0.5], [2.0, 1.0], 0.04, |_, _| 0.0).unwrap();
-    let array = PressureArray::new(&law, 0.005, 0.5).unwrap();
-    let mut terrain = Terrain::new(grid, PressureField::uniform(array)).unwrap();
+    let mut terrain = linear_ground(0.04, |_, _| 0.0);
     FootImprint::new(five_shoes(&terrain, 0.013, -0.05), Vec3::zeros(), &terrain, partial, Reach::Close)
         .stamp(&mut terrain, &Pose::identity());
     let integration = Integration { sub_triangles: SubTriangles::new(4), partial };
