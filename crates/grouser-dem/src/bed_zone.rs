@@ -1,6 +1,7 @@
 //! The active zone of a bed: turned on and off, and told where tools are.
 
 use crate::active_zone::{ActiveZone, Zone, ZoneAccount};
+use crate::block::Block;
 use crate::force_pass::{PassInput, slab_forces};
 use crate::shared_grains::SharedGrains;
 use crate::{Bed, Failure};
@@ -53,7 +54,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
             largest_overlap: P::Real::from_f64(self.largest_overlap),
             set: self.set,
         };
-        let mut sums = slab_forces(&mut slab, &input).ledger;
+        let mut sums = slab_forces(&mut slab, &mut Block::new(&self.table), &input).ledger;
         zone.plane_forces.clear();
         for (list, plane) in slab.planes.iter_mut().zip(&self.settings.planes) {
             sums += list.forces(plane, &input).ledger;

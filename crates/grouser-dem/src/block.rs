@@ -67,6 +67,20 @@ fn lanes_of_four<T: Real, U>(block: *mut <(Vector<T>, T) as Blocked<T>>::Block) 
     if std::mem::offset_of!((Vector<T>, T), 1) == 0 { [number, x, y, z] } else { [x, y, z, number] }
 }
 
+/// Lanes that loops over a block go through at a time: a number that every vector width divides.
+const GROUP: usize = 16;
+
+/// One number for each lane of a group.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+struct Group<T>([T; GROUP]);
+
+impl<T: Real> Default for Group<T> {
+    fn default() -> Self {
+        Self([T::ZERO; GROUP])
+    }
+}
+
 /// One component for each contact of a block. Inputs are overwritten by outputs where both have three components.
 pub(crate) struct Block<T: Real, L: ContactLaw<T>> {
     /// Centre of the second body to centre of the first [m]; after the law the force on the first [N].
@@ -93,11 +107,10 @@ pub(crate) struct Block<T: Real, L: ContactLaw<T>> {
     damping: Lanes<T>,
     tangential_damping_ratio: Lanes<T>,
     friction: Lanes<T>,
-    /// Sums over all blocks of a pass, one lane each.
-    ledger: [Lanes<T>; 6],
-    /// How far overlaps exceed the largest one that is allowed [m], one lane each.
-    depth: Lanes<T>,
-    largest_overlap: T,
+    /// Sums over all blocks of a pass, one for each lane of a group.
+    ledger: [Group<T>; 6],
+    /// How far overlaps exceed the largest one that is allowed [m], one for each lane of a group.
+    depth: Group<T>,
 }
 
 /// Centre to centre [m] of a pair, and (x² + y²) + (z² − reach²) [m²]: negative where it touches.
@@ -131,7 +144,8 @@ fn has_eights<P: Precision>(set: InstructionSet) -> bool {
 }
 
 impl<T: Real, L: ContactLaw<T>> Block<T, L> {
-    pub fn new(table: &PairTable<T>, largest_overlap: T) -> Self {
+    /// Lanes that hold what any law stands, for beds of materials in `table`.
+    pub fn new(table: &PairTable<T>) -> Self {
         let mut block = Self {
             difference: Default::default(),
             excess: Lanes([T::from_f64(0.5); BLOCK]),
@@ -151,7 +165,6 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             friction: Default::default(),
             ledger: Default::default(),
             depth: Default::default(),
-            largest_overlap,
         };
         for k in 0..BLOCK {
             block.difference[0].0[k] = T::ONE;
@@ -179,13 +192,13 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         input: &PassInput<P, L>,
     ) {
         self.gather::<P, HAS_QUADS>(places, slab, input);
-        // Groups of 16 lanes: a constant trip count that every vector width divides; constant bounds of their number, without which
+        // Groups of lanes: a constant trip count that every vector width divides; constant bounds of their number, without which
         // the compiler looks for lanes behind the last one and works on some of them one at a time.
-        for group in (0..BLOCK / 16).take_while(|group| group * 16 < places.len()) {
-            self.touch(group * 16, places.len());
+        for group in (0..BLOCK / GROUP).take_while(|group| group * GROUP < places.len()) {
+            self.touch(group * GROUP, places.len(), input.largest_overlap);
         }
-        for group in (0..BLOCK / 16).take_while(|group| group * 16 < places.len()) {
-            self.respond::<LEDGER>(group * 16, places.len(), &input.law, input.time_step);
+        for group in (0..BLOCK / GROUP).take_while(|group| group * GROUP < places.len()) {
+            self.respond::<LEDGER>(group * GROUP, places.len(), &input.law, input.time_step);
         }
         self.scatter::<P, HAS_QUADS>(places, slab, input.grains);
     }
@@ -219,8 +232,15 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
                     excess: quads::start(&mut self.excess),
                     radius: [quads::start(first), quads::start(second)],
                 };
-                // SAFETY: this pass is compiled for AVX2; `Q` is `P`; lists hold numbers of grains.
-                unsafe { quads::look::<Q>(pairs, next, from, touching, waiting, &places, &lanes) }
+                // SAFETY: this pass is compiled for AVX2, with eights for AVX-512F and AVX-512VL, and `Q` is `F64` then; `Q` is
+                // `P`; lists hold numbers of grains.
+                unsafe {
+                    if has_eights::<Q>(input.set) {
+                        let (places, lanes) = (&*(&raw const places).cast(), &*(&raw const lanes).cast());
+                        next = quads::look_eight(pairs, next, from, touching, waiting, places, lanes);
+                    }
+                    quads::look::<Q>(pairs, next, from, touching, waiting, &places, &lanes)
+                }
             });
             next = seen.unwrap_or(next);
         }
@@ -427,15 +447,14 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         }
     }
 
-    /// Where and how deep the grains of lanes `from..from + 16` touch. Those from `used` on hold leftovers, whose results nobody
+    /// Where and how deep the grains of lanes `from..from + GROUP` touch. Those from `used` on hold leftovers, whose results nobody
     /// may see.
     #[inline(always)]
-    fn touch(&mut self, from: usize, used: usize) {
+    fn touch(&mut self, from: usize, used: usize, largest_overlap: T) {
         let lanes =
             |group: &[Lanes<T>; 3], k: usize| Vector::new(group[0].0[k], group[1].0[k], group[2].0[k]);
-        // Read here: read inside the loop it might be what a lane's store has changed, and nothing would become a vector.
-        let largest_overlap = self.largest_overlap;
-        for k in from..from + 16 {
+        for lane in 0..GROUP {
+            let k = from + lane;
             let (radii, masses) =
                 ([self.radius[0].0[k], self.radius[1].0[k]], [self.mass[0].0[k], self.mass[1].0[k]]);
             let (reach, total_mass) = (radii[0] + radii[1], masses[0] + masses[1]);
@@ -458,17 +477,18 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             self.arm[1].0[k] = radii[1] - half * overlap;
             let depth = overlap - largest_overlap * radii[0].min(radii[1]);
             let depth = if k < used { depth } else { T::ZERO };
-            self.depth.0[k] = depth.max(self.depth.0[k]);
+            self.depth.0[lane] = depth.max(self.depth.0[lane]);
         }
     }
 
-    /// The contact law on lanes `from..from + 16`, of which those below `used` hold contacts.
+    /// The contact law on lanes `from..from + GROUP`, of which those below `used` hold contacts.
     #[inline(always)]
     fn respond<const LEDGER: bool>(&mut self, from: usize, used: usize, law: &L, time_step: T) {
         let lanes =
             |group: &[Lanes<T>; 3], k: usize| Vector::new(group[0].0[k], group[1].0[k], group[2].0[k]);
         let half = T::from_f64(0.5);
-        for k in from..from + 16 {
+        for lane in 0..GROUP {
+            let k = from + lane;
             let (radii, masses) =
                 ([self.radius[0].0[k], self.radius[1].0[k]], [self.mass[0].0[k], self.mass[1].0[k]]);
             let normal = lanes(&self.difference, k);
@@ -512,7 +532,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
                     }
                 }
                 if LEDGER {
-                    self.ledger[5].0[k] += or_nothing(couples.spent);
+                    self.ledger[5].0[lane] += or_nothing(couples.spent);
                 }
             }
             let force = (normal * response.normal_force + response.tangential_force).to_array();
@@ -535,7 +555,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
                     energy.sliding,
                 ];
                 for (sum, term) in self.ledger.iter_mut().zip(terms) {
-                    sum.0[k] += or_nothing(term);
+                    sum.0[lane] += or_nothing(term);
                 }
             }
         }
@@ -606,8 +626,15 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         }
     }
 
+    /// Sums begin anew.
+    #[inline(always)]
+    pub fn forget_sums(&mut self) {
+        (self.ledger, self.depth) = Default::default();
+    }
+
+    /// Sums since they began.
     pub fn totals(&self, time_step: T) -> SlabSums {
-        let total = |lanes: &Lanes<T>| lanes.0.iter().map(|value| value.to_f64()).sum::<f64>();
+        let total = |lanes: &Group<T>| lanes.0.iter().map(|value| value.to_f64()).sum::<f64>();
         let dt = time_step.to_f64();
         let [normal_elastic, tangential_elastic, normal_damping, tangential, sliding, turning] = &self.ledger;
         let ledger = ContactLedger {

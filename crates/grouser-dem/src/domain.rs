@@ -64,10 +64,14 @@ pub(crate) struct Period<C> {
 }
 
 impl<C: Real> Period<C> {
+    /// Number of the image that is not shifted.
+    pub const ITSELF: u32 = 13;
+
     /// The shortest of the images of `difference`, and the number of that image: 13 + turns along x + 3 along y + 9 along z.
     #[inline(always)]
     pub fn nearest(&self, difference: Vector<C>) -> (Vector<C>, u32) {
-        let (mut difference, mut image, mut digit) = (difference.to_array(), C::from_f64(13.0), C::ONE);
+        let (mut difference, mut image, mut digit) =
+            (difference.to_array(), C::from_f64(f64::from(Self::ITSELF)), C::ONE);
         for axis in 0..3 {
             let turns = (difference[axis] * self.inverse[axis]).round_ties_even();
             difference[axis] -= self.length[axis] * turns;

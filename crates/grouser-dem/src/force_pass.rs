@@ -79,19 +79,20 @@ impl InstructionSet {
     }
 }
 
-/// Adds the forces of all touching pairs of `slab` to its grains and those of the next slab.
+/// Adds the forces of all touching pairs of `slab` to its grains and those of the next slab, by way of `block`.
 pub(crate) fn slab_forces<P: Precision, L: ContactLaw<P::Real>>(
     slab: &mut Slab<P::Real, L::Memory>,
+    block: &mut Block<P::Real, L>,
     input: &PassInput<P, L>,
 ) -> SlabSums {
     match input.set {
-        InstructionSet::Baseline => dispatch_ledger::<P, L, false>(slab, input),
+        InstructionSet::Baseline => dispatch_ledger::<P, L, false>(slab, block, input),
         // SAFETY: `detect` found the instructions on this machine.
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx2 => unsafe { slab_forces_avx2(slab, input) },
+        InstructionSet::Avx2 => unsafe { slab_forces_avx2(slab, block, input) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx512 => unsafe { slab_forces_avx512(slab, input) },
+        InstructionSet::Avx512 => unsafe { slab_forces_avx512(slab, block, input) },
     }
 }
 
@@ -99,29 +100,32 @@ pub(crate) fn slab_forces<P: Precision, L: ContactLaw<P::Real>>(
 #[target_feature(enable = "avx2")]
 fn slab_forces_avx2<P: Precision, L: ContactLaw<P::Real>>(
     slab: &mut Slab<P::Real, L::Memory>,
+    block: &mut Block<P::Real, L>,
     input: &PassInput<P, L>,
 ) -> SlabSums {
-    dispatch_ledger::<P, L, true>(slab, input)
+    dispatch_ledger::<P, L, true>(slab, block, input)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
 fn slab_forces_avx512<P: Precision, L: ContactLaw<P::Real>>(
     slab: &mut Slab<P::Real, L::Memory>,
+    block: &mut Block<P::Real, L>,
     input: &PassInput<P, L>,
 ) -> SlabSums {
-    dispatch_ledger::<P, L, true>(slab, input)
+    dispatch_ledger::<P, L, true>(slab, block, input)
 }
 
 #[inline(always)]
 fn dispatch_ledger<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool>(
     slab: &mut Slab<P::Real, L::Memory>,
+    block: &mut Block<P::Real, L>,
     input: &PassInput<P, L>,
 ) -> SlabSums {
     if input.has_ledger {
-        pass::<P, L, HAS_QUADS, true>(slab, input)
+        pass::<P, L, HAS_QUADS, true>(slab, block, input)
     } else {
-        pass::<P, L, HAS_QUADS, false>(slab, input)
+        pass::<P, L, HAS_QUADS, false>(slab, block, input)
     }
 }
 
@@ -142,6 +146,22 @@ impl Waiting {
     #[inline(always)]
     pub fn has_room(&self) -> bool {
         self.n <= BLOCK - 4
+    }
+
+    /// Eight more will fit.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub fn has_room_for_eight(&self) -> bool {
+        self.n <= BLOCK - 8
+    }
+
+    /// Appends the first `n` of eight places; there is room for eight.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub fn append_of_eight(&mut self, eight: [u32; 8], n: usize) {
+        let end = self.n().min(BLOCK - 8);
+        self.places[end..end + 8].copy_from_slice(&eight);
+        self.n += n;
     }
 
     /// Appends `place` if it touches.
@@ -185,9 +205,10 @@ const fn places_of_bits() -> [[u8; 4]; 16] {
 #[inline(always)]
 fn pass<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool, const LEDGER: bool>(
     slab: &mut Slab<P::Real, L::Memory>,
+    block: &mut Block<P::Real, L>,
     input: &PassInput<P, L>,
 ) -> SlabSums {
-    let mut block = Block::<P::Real, L>::new(input.table, input.largest_overlap);
+    block.forget_sums();
     let mut waiting = Waiting { places: [0; BLOCK], n: 0 };
     for word in 0..slab.touched.len() {
         let from = word * 64;

@@ -5,6 +5,7 @@
 
 use crate::candidates::{Candidates, Found, Seeker};
 use crate::cell_grid::CellGrid;
+use crate::domain::Period;
 use crate::plane::PlaneList;
 use grouser_contact::{ContactLedger, Memory, Precision, Real, Sphere};
 use serde::{Deserialize, Serialize};
@@ -36,6 +37,14 @@ impl Pair {
     #[inline(always)]
     pub fn image(self) -> usize {
         (self.second_and_image >> GRAIN_BITS) as usize
+    }
+
+    /// No image of a second grain is nearer than the grain itself.
+    #[inline(always)]
+    pub fn are_within_the_box(pairs: &[Self]) -> bool {
+        let differing =
+            |bits, pair: &Self| bits | (pair.second_and_image ^ Period::<f64>::ITSELF << GRAIN_BITS);
+        pairs.iter().fold(0, differing) >> GRAIN_BITS == 0
     }
 }
 

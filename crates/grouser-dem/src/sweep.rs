@@ -11,6 +11,7 @@
 //! runs that begin with an even slab. The last odd slab of a run, which writes into the next run, waits for the even ones on
 //! both sides, which are passed over first; whoever has finished a run takes those that need not wait any more.
 
+use crate::block::Block;
 use crate::force_pass::{PassInput, slab_forces};
 use crate::integrate::{Motion, Pace};
 use crate::plane::Plane;
@@ -78,28 +79,29 @@ pub(crate) fn sweep<P: Precision, L: ContactLaw<P::Real>>(
     let work = |Run { number: run, start, slabs: own }: Run<'_, Slab<P::Real, L::Memory>>| {
         let end = own.len() - 1;
         let last_even = end & !1;
-        pass(&mut own[0], planes, input);
+        let block = &mut Block::new(input.table);
+        pass(&mut own[0], block, planes, input);
         waiting[(run + n_runs - 1) % n_runs].has_one_less_to_wait_for();
         if last_even > 0 {
-            pass(&mut own[last_even], planes, input);
+            pass(&mut own[last_even], block, planes, input);
         }
         waiting[run].has_one_less_to_wait_for();
         let mut pace = if start == 0 && !is_ring { moves(0) } else { Pace::STILL };
         for even in (2..=last_even).step_by(2) {
             if even < last_even {
-                pass(&mut own[even], planes, input);
+                pass(&mut own[even], block, planes, input);
             }
-            pass(&mut own[even - 1], planes, input);
+            pass(&mut own[even - 1], block, planes, input);
             pace = pace.and(moves(start + even - 1)).and(moves(start + even));
         }
         if end % 2 == 1 {
-            pass(&mut own[end], planes, input);
+            pass(&mut own[end], block, planes, input);
             pace = pace.and(moves(start + end));
         }
         // Whoever is done takes slabs that need not wait any more; the last one finds all of them so.
         for waiting in waiting[run..].iter().chain(&waiting[..run]) {
             if let Some(slab) = waiting.take_if_ready() {
-                pass(slab, planes, input);
+                pass(slab, block, planes, input);
                 pace = pace.and(moves(waiting.number)).and(moves(waiting.number + 1));
             }
         }
@@ -161,12 +163,13 @@ fn starts_of_runs<T: Real, M>(slabs: &[Slab<T, M>], n_threads: usize) -> Vec<usi
 
 fn pass<P: Precision, L: ContactLaw<P::Real>>(
     slab: &mut Slab<P::Real, L::Memory>,
+    block: &mut Block<P::Real, L>,
     planes: &[Plane],
     input: &PassInput<P, L>,
 ) where
     L::Memory: Memory<P::Real>,
 {
-    let mut sums = slab_forces(slab, input);
+    let mut sums = slab_forces(slab, block, input);
     for (list, plane) in slab.planes.iter_mut().zip(planes) {
         let of_plane = list.forces(plane, input);
         sums.ledger += of_plane.ledger;

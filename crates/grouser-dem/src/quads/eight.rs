@@ -1,11 +1,94 @@
-//! Motion and orientations of eight pairs at once with 512-bit vectors, in double precision: half the loads, shuffles and stores
-//! of four at a time, and the same bytes.
+//! Places, motion and orientations of eight pairs at once with 512-bit vectors, in double precision: half the loads, shuffles and
+//! stores of four at a time, and the same bytes.
 
-use super::MotionLanes;
+use super::quad::Quad;
+use super::{MotionLanes, PlaceLanes, Places, fetch_memory};
+use crate::force_pass::Waiting;
 use crate::slab::Pair;
 use grouser_contact::{BLOCK, F64, Sphere};
 use grouser_geometry::Orientation;
 use std::arch::x86_64::*;
+
+/// As [`super::look`], eight pairs at a time, until fewer are left or fit.
+///
+/// # Safety
+/// As [`super::look`], on a machine that has AVX-512F and AVX-512VL.
+#[target_feature(enable = "avx2,avx512f,avx512vl")]
+pub(crate) unsafe fn look_eight(
+    pairs: &[Pair],
+    mut next: usize,
+    from: u32,
+    touching: &mut u64,
+    waiting: &mut Waiting,
+    places: &Places<F64>,
+    lanes: &PlaceLanes<f64>,
+) -> usize {
+    // SAFETY: by the caller's promise; a sphere begins with its position and its radius; images are below 32.
+    unsafe {
+        let count = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+        while let Some(eight) = pairs.get(next..).and_then(<[Pair]>::first_chunk::<8>)
+            && waiting.has_room_for_eight()
+        {
+            let mut grains = [[std::ptr::null::<f64>(); 8]; 2];
+            for n in 0..8 {
+                let [first, second] = eight[n].grains();
+                grains[0][n] = places.spheres.add(first as usize).cast();
+                grains[1][n] = places.spheres.add(second as usize).cast();
+            }
+            let [near, far] = grains;
+            // From the second to the first, and the first one's radius.
+            let mut rows = [_mm512_setzero_pd(); 4];
+            for n in 0..4 {
+                let (first, second) = (two_rows(near[n], near[n + 4]), two_rows(far[n], far[n + 4]));
+                rows[n] = _mm512_mask_sub_pd(first, 0b0111_0111, first, second);
+            }
+            if !Pair::are_within_the_box(eight) {
+                for n in 0..4 {
+                    let shift = |n: usize| places.shifts.add(eight[n].image()).cast();
+                    rows[n] = _mm512_sub_pd(rows[n], two_rows(shift(n), shift(n + 4)));
+                }
+            }
+            let [x, y, z, radius] = transposed(rows);
+            let other = _mm512_insertf64x4::<1>(
+                _mm512_castpd256_pd512(__m256d::fourths([far[0], far[1], far[2], far[3]])),
+                __m256d::fourths([far[4], far[5], far[6], far[7]]),
+            );
+            // (x² + y²) + (z² − reach²), negative where they touch.
+            let reach = _mm512_add_pd(radius, other);
+            let across = _mm512_add_pd(_mm512_mul_pd(x, x), _mm512_mul_pd(y, y));
+            let along = _mm512_sub_pd(_mm512_mul_pd(z, z), _mm512_mul_pd(reach, reach));
+            let room = _mm512_add_pd(across, along);
+            let mask = _mm512_cmp_pd_mask::<_CMP_LT_OQ>(room, _mm512_setzero_pd());
+            let excess = _mm512_castsi512_pd(_mm512_xor_si512(
+                _mm512_castpd_si512(room),
+                _mm512_castpd_si512(_mm512_set1_pd(-0.0)),
+            ));
+            let n = waiting.n();
+            let [lane_x, lane_y, lane_z] = lanes.difference;
+            let [lane_radius, lane_other] = lanes.radius;
+            let put = [
+                (lane_x, x),
+                (lane_y, y),
+                (lane_z, z),
+                (lanes.excess, excess),
+                (lane_radius, radius),
+                (lane_other, other),
+            ];
+            for (lane, value) in put {
+                // Behind those that touch others stay, so that every lane holds what a law stands.
+                _mm512_storeu_pd(lane.add(n), _mm512_mask_compress_pd(value, mask, value));
+            }
+            let place = _mm256_add_epi32(count, _mm256_set1_epi32((from as usize + next) as i32));
+            let mut packed = [0_u32; 8];
+            _mm256_storeu_si256(packed.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, place));
+            waiting.append_of_eight(packed, mask.count_ones() as usize);
+            fetch_memory(places, from as usize + next, 8);
+            *touching |= u64::from(mask) << next;
+            next += 8;
+        }
+    }
+    next
+}
 
 /// Fills lanes 0.. with the motion, and with the orientations if `HAS_FRAMES`, of the pairs at `at`.
 ///
@@ -67,19 +150,29 @@ pub(crate) unsafe fn gather_eight<const HAS_FRAMES: bool>(
 unsafe fn columns([a, b, c, d, e, f, g, h]: [*const f64; 8], from: usize) -> [__m512d; 4] {
     // SAFETY: by the caller's promise.
     unsafe {
-        let (ae, bf) = (two_rows(a.add(from), e.add(from)), two_rows(b.add(from), f.add(from)));
-        let (cg, dh) = (two_rows(c.add(from), g.add(from)), two_rows(d.add(from), h.add(from)));
-        let (ab_even, ab_odd) = (_mm512_unpacklo_pd(ae, bf), _mm512_unpackhi_pd(ae, bf));
-        let (cd_even, cd_odd) = (_mm512_unpacklo_pd(cg, dh), _mm512_unpackhi_pd(cg, dh));
-        let low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
-        let high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
-        [
-            _mm512_permutex2var_pd(ab_even, low, cd_even),
-            _mm512_permutex2var_pd(ab_odd, low, cd_odd),
-            _mm512_permutex2var_pd(ab_even, high, cd_even),
-            _mm512_permutex2var_pd(ab_odd, high, cd_odd),
-        ]
+        transposed([
+            two_rows(a.add(from), e.add(from)),
+            two_rows(b.add(from), f.add(from)),
+            two_rows(c.add(from), g.add(from)),
+            two_rows(d.add(from), h.add(from)),
+        ])
     }
+}
+
+/// Columns of eight rows of four numbers, of which the fifth to eighth stand beside the first to fourth.
+#[target_feature(enable = "avx2,avx512f")]
+#[inline]
+fn transposed([ae, bf, cg, dh]: [__m512d; 4]) -> [__m512d; 4] {
+    let (ab_even, ab_odd) = (_mm512_unpacklo_pd(ae, bf), _mm512_unpackhi_pd(ae, bf));
+    let (cd_even, cd_odd) = (_mm512_unpacklo_pd(cg, dh), _mm512_unpackhi_pd(cg, dh));
+    let low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+    let high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+    [
+        _mm512_permutex2var_pd(ab_even, low, cd_even),
+        _mm512_permutex2var_pd(ab_odd, low, cd_odd),
+        _mm512_permutex2var_pd(ab_even, high, cd_even),
+        _mm512_permutex2var_pd(ab_odd, high, cd_odd),
+    ]
 }
 
 /// Four numbers from each of two places.

@@ -15,7 +15,7 @@ mod several;
 mod turn;
 
 pub(crate) use advance::advance;
-pub(crate) use eight::gather_eight;
+pub(crate) use eight::{gather_eight, look_eight};
 pub(crate) use memory::{recall, remember};
 
 use crate::force_pass::Waiting;
@@ -126,17 +126,23 @@ pub(crate) unsafe fn look<Q: Quads>(
                 value.narrowed().packed(mask).store(lane.add(n));
             }
             waiting.append_four(mask, from + next as u32);
-            let (start, end) = (from as usize + next, from as usize + next + 4);
-            let mut line = start * places.memory_bytes;
-            while line < end * places.memory_bytes {
-                _mm_prefetch::<_MM_HINT_T0>(places.memory.wrapping_add(line).cast());
-                line += 64;
-            }
+            fetch_memory(places, from as usize + next, 4);
             *touching |= (mask as u64) << next;
             next += 4;
         }
     }
     next
+}
+
+/// Fetches what `n` pairs from place `start` on remember.
+#[inline(always)]
+fn fetch_memory<Q: Quads>(places: &Places<Q>, start: usize, n: usize) {
+    let mut line = start * places.memory_bytes;
+    while line < (start + n) * places.memory_bytes {
+        // SAFETY: nothing is read.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(places.memory.wrapping_add(line).cast()) };
+        line += 64;
+    }
 }
 
 /// Positions of the two grains, and (x, y, z) from the second to the first.
