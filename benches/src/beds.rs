@@ -12,7 +12,9 @@ use std::time::Instant;
 /// 2600 kg/m³, E = 10 MPa, ν = 0.3.
 pub const SAND: Material = Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 2600.0 };
 /// Hertz–Mindlin with history.
-pub type Law = HertzMindlin<true, false>;
+pub type Law = HertzMindlin;
+/// The dashpot may attract.
+pub const LAW: Law = HertzMindlin::new(Tail::Keep);
 
 /// Drag over mass while a bed settles [1/s]: grains fall with 0.5 m/s.
 const VISCOSITY: f64 = 20.0;
@@ -169,7 +171,7 @@ impl BedOf {
         };
         let between = Interaction { restitution: 0.5, friction: 0.5 };
         let table = PairTable::new(&[SAND], Tail::Keep, |_, _| between)?;
-        Ok(Bed::new(spheres, settings, table, HertzMindlin)?)
+        Ok(Bed::new(spheres, settings, table, LAW)?)
     }
 }
 

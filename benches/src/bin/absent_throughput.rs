@@ -4,7 +4,7 @@
 //! and its floor written for this one law, the same bed with a rotation law that does nothing, and steps made phase by phase. Runs alternate; the
 //! fastest of each counts.
 
-use benches::beds::{BedOf, Law, SAND};
+use benches::beds::{BedOf, LAW, Law, SAND};
 use benches::figures::Figures;
 use clap::Parser;
 use grouser_contact::*;
@@ -151,7 +151,7 @@ fn answer(
     pair: &PairProperties,
     spring: &mut Vector<f64>,
 ) -> (Vector<f64>, Vector<f64>) {
-    let (response, remembered) = Law::default().respond(contact, pair, *spring);
+    let (response, remembered) = LAW.respond(contact, pair, *spring);
     *spring = remembered;
     let tangential = response.tangential_force;
     (contact.normal * response.normal_force + tangential, contact.normal.cross(tangential))
@@ -166,7 +166,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut bed = bed_of.settled()?;
     let between = Interaction { restitution: 0.5, friction: 0.5 };
     let table = PairTable::new(&[SAND], Tail::Keep, |_, _| between)?;
-    let nothing = Rotating { forces: Law::default(), rotation: Free };
+    let nothing = Rotating { forces: LAW, rotation: Free };
     let mut free = Bed::new(bed.grains().spheres.clone(), bed.settings().clone(), table, nothing)?;
     let mut phases = bed.clone();
     let mut by_hand = ByHand::of(&bed, dt);

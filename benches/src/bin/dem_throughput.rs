@@ -37,7 +37,7 @@ struct Arguments {
 
 const TIME_STEP: f64 = 4e-5;
 const SAND: Material = Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 2600.0 };
-type Law = HertzMindlin<true, false>;
+type Law = HertzMindlin;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::parse();
@@ -96,7 +96,7 @@ fn bed(spheres: Vec<Sphere>, arguments: &Arguments) -> Result<Bed<Law>, Box<dyn 
         has_ledger: arguments.ledger,
     };
     let table = PairTable::new(&[SAND], Tail::Keep, |_, _| between)?;
-    Ok(Bed::new(spheres, settings, table, HertzMindlin)?)
+    Ok(Bed::new(spheres, settings, table, HertzMindlin::new(Tail::Keep))?)
 }
 
 fn domain(top: f64) -> Domain {

@@ -98,7 +98,7 @@ const SAND: Material = Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 26
 /// Mass of a frozen grain over its real mass: m* and accelerations differ from those of a fixed body by less than rounding.
 const FROZEN: f64 = 1e9;
 /// The peers' law: the dashpot may attract, and the spring is the displacement since first touch.
-type Law = HertzMindlin<true, true>;
+type Law = HertzMindlin<true>;
 
 /// A grain as files hold it.
 struct Row {
@@ -207,7 +207,7 @@ fn bed<P: Precision>(rows: &[Row], edge: f64, slope_deg: f64) -> Result<Bed<Law,
         grain
     });
     let table = PairTable::new(&[SAND], Tail::Keep, |_, _| between)?;
-    Ok(Bed::new(spheres.collect(), settings, table, HertzMindlin)?)
+    Ok(Bed::new(spheres.collect(), settings, table, Law { tail: Tail::Keep })?)
 }
 
 /// Contacts, overlap and motion of the grains that are not frozen; contacts within the base do not count.

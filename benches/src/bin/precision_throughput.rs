@@ -4,7 +4,7 @@
 //! 60 mm in each precision. Packings diverge from the least difference, so the plate starts at several places, and a bed of which
 //! one half is shifted by 1 µm shows how far that alone goes. The differences of the mean forces are given.
 
-use benches::beds::{BedOf, Law, SAND};
+use benches::beds::{BedOf, LAW, Law, SAND};
 use benches::figures::Figures;
 use clap::Parser;
 use grouser_contact::*;
@@ -48,7 +48,7 @@ where
     let top = rows.iter().map(|(place, radius)| place.z + radius).fold(0.0, f64::max);
     let spheres = rows.iter().map(|&(place, radius)| sphere::<P>(place, radius, SAND.density_kg_m3, 0));
     let mut bed = bed_of.of::<P>(spheres.collect())?;
-    let (law, table): (Law, _) = (HertzMindlin, bed.pair_table().clone());
+    let (law, table): (Law, _) = (LAW, bed.pair_table().clone());
     bed.run(500, dt, |_| Ok::<(), Failure>(()))?;
     let mut motion = RigidMotion::at_rest(Vec3::new(at[0], at[1], top));
     motion.velocity = Vec3::z() * -SPEED;

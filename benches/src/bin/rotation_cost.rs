@@ -40,7 +40,6 @@ struct Arguments {
 
 const TIME_STEP: f64 = 4e-5;
 const SAND: Material = Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 2600.0 };
-type Forces = HertzMindlin<false, false>;
 
 /// A bed whatever its law.
 trait Timed {
@@ -76,8 +75,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let of = |shape| TiltingSettings { lift_damping: arguments.lift_damping, ..TiltingSettings::of(shape) };
     let half = GrainShape::Angular { aspect_ratio: 0.5 };
     let mut beds: Vec<(&str, Box<dyn Timed>)> = vec![
-        ("free", boxed(&spheres, Rotation::Free, HertzMindlin::<false, false>)?),
-        ("fixed", boxed(&spheres, Rotation::Fixed, HertzMindlin::<false, false>)?),
+        ("free", boxed(&spheres, Rotation::Free, HertzMindlin::new(Tail::CutCorrected))?),
+        ("fixed", boxed(&spheres, Rotation::Fixed, HertzMindlin::new(Tail::CutCorrected))?),
         ("rolling, constant", rotating(&spheres, ConstantRolling::new(0.1)?)?),
         ("rolling, elastic-plastic", rotating(&spheres, ElasticPlasticRolling::new(0.1, 0.3)?)?),
         ("tilting, box", rotating(&spheres, Tilting::<false>::new(&of(half))?)?),
@@ -117,7 +116,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn rotating<R: RotationLaw<f64>>(spheres: &[Sphere], rotation: R) -> Result<Box<dyn Timed>, Box<dyn Error>> {
-    boxed(spheres, Rotation::Free, Rotating { forces: Forces {}, rotation })
+    boxed(spheres, Rotation::Free, Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation })
 }
 
 fn boxed<L: ContactLaw<f64>>(
@@ -159,7 +158,7 @@ fn settled(n_grains: usize) -> Result<Vec<Sphere>, Box<dyn Error>> {
     let radii = RadiusDistribution::Uniform { from_m: 0.0038, to_m: 0.0042 };
     let layer = Layer { radii, n_grains, density: SAND.density_kg_m3, material: 0 };
     let packing = random_packing::<F64>(&domain(0.5), &[layer], 1)?;
-    let mut bed = bed(packing, Rotation::Free, HertzMindlin::<false, false>)?;
+    let mut bed = bed(packing, Rotation::Free, HertzMindlin::new(Tail::CutCorrected))?;
     let mut settling = Settling::new(SettleCriterion { longest_s: 10.0, ..Default::default() }, TIME_STEP);
     while settling.advance(&mut bed)?.is_none() {}
     Ok(bed.grains().spheres.clone())

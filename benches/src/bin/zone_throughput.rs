@@ -5,10 +5,9 @@
 //! diverge from the least difference, so one pair of runs says little: the plate starts at several places, and the mean of the
 //! differences and its standard error are given, beside those of a bed of which one half is shifted by 10 µm.
 
-use benches::beds::{BedOf, Law};
+use benches::beds::{BedOf, LAW, Law};
 use benches::figures::Figures;
 use clap::{Parser, ValueEnum};
-use grouser_contact::HertzMindlin;
 use grouser_coupling::{Step, SurfaceContacts};
 use grouser_dem::{ActiveZone, Bed, Failure, Grains, RadiusDistribution, ZoneAccount};
 use grouser_geometry::generate::disc_plate;
@@ -114,7 +113,7 @@ fn go(
     let tops = bed.grains().spheres.iter().filter(|s| is_below(s)).map(|s| s.position.z + s.radius);
     let mut motion = RigidMotion::at_rest(Vec3::new(at[0], at[1], tops.fold(0.0, f64::max)));
     let mut plate = SurfaceContacts::new(disc_plate(RADIUS, THICKNESS, 64)?, 0);
-    let (law, table): (Law, _) = (HertzMindlin, bed.pair_table().clone());
+    let (law, table): (Law, _) = (LAW, bed.pair_table().clone());
     if let Some((_, wake)) = zone {
         let zone = ActiveZone { block_m: 0.024, rest_speed: 1e-3, rest_time_s: 8e-3, wake };
         bed.set_active_zone(Some(zone))?;

@@ -6,22 +6,36 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// The law of P0. `KEEP_TAIL`: the dashpot may attract ([`Tail::Keep`]). `TOTAL_DISPLACEMENT`:
-/// [`Loading::TotalDisplacement`] instead of [`Loading::Passive`].
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct HertzMindlin<const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool>;
+/// The law of P0. `TOTAL_DISPLACEMENT`: [`Loading::TotalDisplacement`] instead of [`Loading::Passive`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct HertzMindlin<const TOTAL_DISPLACEMENT: bool = false> {
+    /// What becomes of the dashpot's attraction.
+    pub tail: Tail,
+}
 
-impl<const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> HertzMindlin<KEEP_TAIL, TOTAL_DISPLACEMENT> {
-    /// The tail that this type stands for.
-    pub const TAIL: Tail = if KEEP_TAIL { Tail::Keep } else { Tail::CutCorrected };
+impl HertzMindlin {
+    /// The law with a spring that yields no energy on any closed path of loading.
+    pub const fn new(tail: Tail) -> Self {
+        Self { tail }
+    }
+}
+
+impl<const TOTAL_DISPLACEMENT: bool> HertzMindlin<TOTAL_DISPLACEMENT> {
     /// The loading rule that this type stands for.
     pub const LOADING: Loading =
         if TOTAL_DISPLACEMENT { Loading::TotalDisplacement } else { Loading::Passive };
+
+    /// The smallest normal force [N].
+    #[inline(always)]
+    fn least_force<T: Real>(&self) -> T {
+        match self.tail {
+            Tail::Keep => T::from_f64(f64::NEG_INFINITY),
+            Tail::CutCorrected => T::ZERO,
+        }
+    }
 }
 
-impl<T: Real, const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> ContactLaw<T>
-    for HertzMindlin<KEEP_TAIL, TOTAL_DISPLACEMENT>
-{
+impl<T: Real, const TOTAL_DISPLACEMENT: bool> ContactLaw<T> for HertzMindlin<TOTAL_DISPLACEMENT> {
     type Memory = Vector<T>;
     type Rotation = Free;
 
@@ -44,7 +58,7 @@ impl<T: Real, const KEEP_TAIL: bool, const TOTAL_DISPLACEMENT: bool> ContactLaw<
         let stiffness = hertz_stiffness(pair.normal_modulus, contact_radius);
         let dashpot = pair.damping * (effective_mass * stiffness).sqrt();
         let pushed = stiffness * overlap - dashpot * normal_velocity;
-        let normal_force = if KEEP_TAIL { pushed } else { pushed.max(T::ZERO) };
+        let normal_force = pushed.max(self.least_force());
         let limit = pair.friction * normal_force.max(T::ZERO);
 
         // Tangential: the spring is turned with the pair, stretched by the sliding, cut at Coulomb's limit.

@@ -30,7 +30,7 @@
 //!     effective_mass: 5.86e-3,
 //!     time_step: 1e-8,
 //! };
-//! let (response, spring) = HertzMindlin::<false, false>.respond(&contact, &pair, Vector::ZERO);
+//! let (response, spring) = HertzMindlin::new(Tail::CutCorrected).respond(&contact, &pair, Vector::ZERO);
 //! assert!((response.normal_force - 2.3570226).abs() < 1e-7); // 4/3 E* √R* δ^1.5
 //! assert!(response.tangential_force.x < 0.0 && spring.x == 1e-10);
 //! # Ok::<(), ParameterError>(())

@@ -19,7 +19,7 @@
 //! let bead = Sphere::<F64> { position, radius: 0.01, mass: 0.0105, ..Default::default() };
 //! let mut loads = [Load::default()];
 //! let mut contacts = SurfaceContacts::new(plane(1.0, 1.0, 50, 50)?, 0);
-//! let step = Step { law: &HertzMindlin::<false, false>, table: &table, time_step: 1e-5, fastest: 0.0 };
+//! let step = Step { law: &HertzMindlin::new(Tail::CutCorrected), table: &table, time_step: 1e-5, fastest: 0.0 };
 //! let on_table = contacts.forces(&RigidMotion::default(), (&[bead], &[0]), &mut loads, &step);
 //! let hertz = table.pair(0, 0).normal_modulus * 0.01_f64.sqrt() * 1e-5_f64.powf(1.5);
 //! assert!((loads[0].force.z - hertz).abs() < 1e-9 * hertz);

@@ -27,7 +27,7 @@
 //!     has_ledger: true,
 //! };
 //! let weight = bead.mass * 9.81;
-//! let mut bed = Bed::new(vec![bead], settings, table, HertzMindlin::<false, false>)?;
+//! let mut bed = Bed::new(vec![bead], settings, table, HertzMindlin::new(Tail::CutCorrected))?;
 //! for _ in 0..20_000 {
 //!     bed.step(2e-5)?;
 //! }

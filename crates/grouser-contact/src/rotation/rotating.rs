@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// use grouser_contact::*;
 /// let shape = GrainShape::Angular { aspect_ratio: 0.5 };
 /// let rotation = Tilting::<false>::new(&TiltingSettings::of(shape))?;
-/// let law = Rotating { forces: HertzMindlin::<false, false>, rotation };
+/// let law = Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation };
 /// assert_eq!(RotationLaw::<f64>::inertia_ratios(&law.rotation), [1.0 / 3.0; 3]);
 /// # Ok::<(), ParameterError>(())
 /// ```

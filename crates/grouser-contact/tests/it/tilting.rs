@@ -194,7 +194,7 @@ fn force_times_velocity_is_what_the_motion_and_the_ledger_account_for() {
             (parts.normal - centres.dot(normal)).abs() < 1e-15 && parts.tangential.dot(normal).abs() < 1e-14
         );
         let contact = Contact { normal, velocity: parts, ..touching(1e-5, velocity, 1e-6) };
-        let (response, _) = HertzMindlin::<false, false>.respond(&contact, &pair, Vector::ZERO);
+        let (response, _) = HertzMindlin::new(Tail::CutCorrected).respond(&contact, &pair, Vector::ZERO);
         let half = 0.5 * response.normal_force;
         let (couples, built_up) = law.couples(&contact, &pair, &response, &bodies, half);
         assert!(built_up > half && built_up < response.normal_force, "{built_up}");

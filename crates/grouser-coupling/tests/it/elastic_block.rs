@@ -12,7 +12,7 @@ fn of(v: Vector<f64>) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)
 }
 
-type Law = HertzMindlin<false, false>;
+const LAW: HertzMindlin = HertzMindlin::new(Tail::CutCorrected);
 
 /// A block of rubber that stands in the world.
 struct Block(Solid);
@@ -84,7 +84,7 @@ impl Impact {
         self.bead.position += self.bead.velocity * dt;
         let mut loads = [Load::default()];
         let moved = MovedGrains { spheres: &[self.bead], ids: &[0], orientations: None, loads: &mut loads };
-        let step = Step { law: &Law {}, table: &self.table, time_step: dt, fastest: 3.0 };
+        let step = Step { law: &LAW, table: &self.table, time_step: dt, fastest: 3.0 };
         coupled_step(&mut self.block, &mut self.contacts, moved, &step, 1, |_| ()).unwrap();
         self.load = loads[0];
         self.kick_bead(dt / 2.0);
@@ -104,7 +104,7 @@ impl Impact {
             let place = |n: u32| start[n as usize] * (1.0 - share) + solid.position(n) * share;
             self.contacts.follow_in(bead_dt, place);
             let mut loads = [Load::default()];
-            let step = Step { law: &Law {}, table: &self.table, time_step: bead_dt, fastest: 3.0 };
+            let step = Step { law: &LAW, table: &self.table, time_step: bead_dt, fastest: 3.0 };
             self.contacts.forces((&[self.bead], &[0]), &mut loads, &step, |_| ());
             self.contacts.spread(|node, force| applied[node as usize] += force / f64::from(n));
             self.load = loads[0];
@@ -144,7 +144,7 @@ fn a_pressed_block_at_rest_loses_nothing_though_its_nodes_are_kicked_at_each_ste
     let mut contacts = block.contacts();
     let dt = 2.0 * block.0.stable_time_step().dt;
     let (table, bead) = (table(), bead(Vec3::new(0.047, 0.061, 0.05 + 0.8 * RADIUS)));
-    let step = Step { law: &Law {}, table: &table, time_step: dt, fastest: 0.0 };
+    let step = Step { law: &LAW, table: &table, time_step: dt, fastest: 0.0 };
     let mut force = 0.0;
     let mut run = |n_steps: u32| {
         for _ in 0..n_steps {

@@ -10,7 +10,7 @@ use grouser_coupling::*;
 use grouser_geometry::generate::{cone, cuboid, icosphere, plane};
 use grouser_geometry::{Orientation, RigidMotion, TriangleSurface, Vec3, Wrench};
 
-type Law = HertzMindlin<false, false>;
+type Law = HertzMindlin;
 
 const GLASS: Material = Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 2500.0 };
 const RADIUS: f64 = 0.01;
@@ -30,7 +30,7 @@ fn bead(centre: Vec3) -> Sphere {
 }
 
 fn step(table: &PairTable) -> Step<'_, Law, f64> {
-    Step { law: &HertzMindlin, table, time_step: 1e-5, fastest: 1.0 }
+    Step { law: &const { HertzMindlin::new(Tail::CutCorrected) }, table, time_step: 1e-5, fastest: 1.0 }
 }
 
 /// Load of one bead at rest, wrench on the surface, number of contacts.
@@ -223,7 +223,7 @@ fn an_angular_grain_feels_its_edge_on_a_surface_as_on_a_plane() {
     // The torque of a contact that has lasted: without build-up it is there at once.
     let settings = TiltingSettings { build_up: 0.0, ..TiltingSettings::of(GrainShape::Cube) };
     let law = Rotating {
-        forces: HertzMindlin::<false, false>,
+        forces: HertzMindlin::new(Tail::CutCorrected),
         rotation: Tilting::<false>::new(&settings).unwrap(),
     };
     let table = table();

@@ -3,7 +3,7 @@
 use crate::*;
 use std::sync::OnceLock;
 
-type Law = HertzMindlin<false, false>;
+type Law = HertzMindlin;
 
 const DT: f64 = 4e-5;
 
@@ -23,7 +23,7 @@ fn settled() -> Bed<Law> {
         // Grains that roll freely may go on for long.
         settings.rotation = Rotation::Fixed;
         let table = table(0.3, 0.5, Tail::CutCorrected);
-        let mut bed = Bed::new(spheres, settings, table, HertzMindlin).unwrap();
+        let mut bed = Bed::new(spheres, settings, table, HertzMindlin::new(Tail::CutCorrected)).unwrap();
         go_on(&mut bed, 12_000);
         bed.set_background_damping(0.05);
         go_on(&mut bed, 8_000);

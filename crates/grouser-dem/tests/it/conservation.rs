@@ -12,9 +12,13 @@ fn forces_among_grains_leave_the_momentum_alone() {
     for (n, sphere) in spheres.iter_mut().enumerate() {
         sphere.velocity = Vector::new((n as f64).sin(), (2.0 * n as f64).sin(), (3.0 * n as f64).cos());
     }
-    let mut bed =
-        Bed::new(spheres, settings, table(0.7, 0.5, Tail::CutCorrected), HertzMindlin::<false, false>)
-            .unwrap();
+    let mut bed = Bed::new(
+        spheres,
+        settings,
+        table(0.7, 0.5, Tail::CutCorrected),
+        HertzMindlin::new(Tail::CutCorrected),
+    )
+    .unwrap();
     let before = bed.grains().momentum();
     bed.run(2000, 2e-5, |_| Ok::<(), Failure>(())).unwrap();
     let lost = bed.energy().contacts.dissipated();
@@ -29,10 +33,10 @@ fn angular_momentum_of_an_oblique_impact_is_kept() {
         head_on(0.008, 0.3),
         empty_space(),
         table(0.6, 0.4, Tail::Keep),
-        HertzMindlin::<true, false>,
+        HertzMindlin::new(Tail::Keep),
     )
     .unwrap();
-    let angular_momentum = |bed: &Bed<HertzMindlin<true, false>>| {
+    let angular_momentum = |bed: &Bed<HertzMindlin>| {
         let spheres = &bed.grains().spheres;
         spheres
             .iter()
@@ -49,7 +53,7 @@ fn angular_momentum_of_an_oblique_impact_is_kept() {
 fn the_ledger_of_a_falling_bed_balances_and_the_error_falls_with_the_step() {
     let residual = |dt: f64| {
         let (spheres, settings) = falling_column::<F64>(200, 3);
-        let law = HertzMindlin::<false, false>;
+        let law = HertzMindlin::new(Tail::CutCorrected);
         let mut bed = Bed::new(spheres, settings, table(0.5, 0.5, Tail::CutCorrected), law).unwrap();
         let before = bed.energy().stored();
         let n_steps = (0.25 / dt).round() as u64;
@@ -68,7 +72,7 @@ fn the_ledger_of_a_falling_bed_balances_and_the_error_falls_with_the_step() {
 fn a_settled_bed_weighs_what_its_grains_weigh() {
     let (spheres, mut settings) = falling_column::<F64>(300, 5);
     settings.has_ledger = false;
-    let law = HertzMindlin::<false, false>;
+    let law = HertzMindlin::new(Tail::CutCorrected);
     let mut bed = Bed::new(spheres, settings, table(0.3, 0.5, Tail::CutCorrected), law).unwrap();
     let mut settling = Settling::new(SettleCriterion::default(), 4e-5);
     let settled = loop {
@@ -87,7 +91,7 @@ fn a_ledger_turned_on_late_begins_with_what_the_contacts_store() {
     let bed_after = |has_ledger: bool| {
         let (spheres, settings) = falling_column::<F64>(200, 3);
         let settings = BedSettings { has_ledger, ..settings };
-        let law = HertzMindlin::<false, false>;
+        let law = HertzMindlin::new(Tail::CutCorrected);
         let mut bed = Bed::new(spheres, settings, table(0.5, 0.5, Tail::CutCorrected), law).unwrap();
         bed.run(15_000, 2e-5, |_| Ok::<(), Failure>(())).unwrap();
         bed

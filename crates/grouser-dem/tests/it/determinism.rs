@@ -2,14 +2,15 @@
 
 use crate::*;
 
-type Law = HertzMindlin<false, false>;
+type Law = HertzMindlin;
 
 fn column<P: Precision>(n_grains: usize) -> Bed<Law, P> {
     let (mut spheres, settings) = falling_column::<P>(n_grains, 7);
     for sphere in &mut spheres {
         sphere.velocity.z = P::Real::from_f64(-2.0);
     }
-    Bed::new(spheres, settings, table(0.5, 0.5, Tail::CutCorrected), HertzMindlin).unwrap()
+    Bed::new(spheres, settings, table(0.5, 0.5, Tail::CutCorrected), HertzMindlin::new(Tail::CutCorrected))
+        .unwrap()
 }
 
 fn go_on<P: Precision>(bed: &mut Bed<Law, P>, n_steps: u64) {
@@ -81,7 +82,9 @@ fn with_every_motion<P: Precision>() {
             let bed = column::<P>(500);
             let settings = BedSettings { rotation, ..bed.settings().clone() };
             let spheres = bed.grains().spheres.clone();
-            let mut bed = Bed::new(spheres, settings, bed.pair_table().clone(), HertzMindlin).unwrap();
+            let mut bed =
+                Bed::new(spheres, settings, bed.pair_table().clone(), HertzMindlin::new(Tail::CutCorrected))
+                    .unwrap();
             if has_orientations {
                 bed.grains_mut().track_orientations();
             }

@@ -2,8 +2,8 @@
 
 use crate::*;
 
-fn bed_of(spheres: Vec<Sphere>, settings: BedSettings) -> Result<Bed<HertzMindlin<false, false>>, BedError> {
-    Bed::new(spheres, settings, table(0.5, 0.5, Tail::CutCorrected), HertzMindlin)
+fn bed_of(spheres: Vec<Sphere>, settings: BedSettings) -> Result<Bed<HertzMindlin>, BedError> {
+    Bed::new(spheres, settings, table(0.5, 0.5, Tail::CutCorrected), HertzMindlin::new(Tail::CutCorrected))
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn beds_of_no_one_or_two_grains_are_refused_or_move_for_a_hundred_thousand_seeds
         assert_eq!(spheres.len(), n_grains);
         let planes = vec![Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0 }];
         let settings = BedSettings { domain, planes, gravity: Vec3::z() * -9.81, ..empty_space() };
-        match Bed::new(spheres, settings, between.clone(), HertzMindlin::<false, false>) {
+        match Bed::new(spheres, settings, between.clone(), HertzMindlin::new(Tail::CutCorrected)) {
             Ok(mut bed) => bed.run(2, 1e-6, |_| Ok::<(), Failure>(())).unwrap(),
             Err(error) => assert!(n_grains == 0 && error == BedError::Empty, "{seed}: {error}"),
         }

@@ -12,7 +12,7 @@ fn error_of_a_bounce(integrator: Integrator, time_step: f64) -> f64 {
         bead.velocity.z = -1.0;
         let mut settings = empty_space();
         settings.planes = vec![Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0 }];
-        let law = HertzMindlin::<false, false>;
+        let law = HertzMindlin::new(Tail::CutCorrected);
         let mut bed = Bed::new(vec![bead], settings, table(1.0, 0.0, Tail::CutCorrected), law).unwrap();
         bed.set_integrator(integrator).unwrap();
         bed.run((6e-3 / time_step) as u64, time_step, |_| Ok::<(), Failure>(())).unwrap();
@@ -39,7 +39,7 @@ fn both_schemes_are_of_second_order_and_verlet_is_closer() {
 fn newmark_without_a_share_in_the_position_is_verlet() {
     let run = |integrator| {
         let (spheres, settings) = falling_column::<F64>(100, 7);
-        let law = HertzMindlin::<false, false>;
+        let law = HertzMindlin::new(Tail::CutCorrected);
         let mut bed = Bed::new(spheres, settings, table(0.5, 0.5, Tail::CutCorrected), law).unwrap();
         bed.set_integrator(integrator).unwrap();
         bed.run(3000, 4e-5, |_| Ok::<(), Failure>(())).unwrap();

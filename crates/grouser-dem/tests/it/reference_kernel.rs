@@ -50,7 +50,7 @@ impl Plain {
                     effective_mass: a.mass * b.mass / (a.mass + b.mass),
                     time_step: dt,
                 };
-                let law = HertzMindlin::<false, false>;
+                let law = HertzMindlin::new(Tail::CutCorrected);
                 let (response, spring) = law.respond(&contact, &self.pair, self.springs[i][j]);
                 self.springs[i][j] = spring;
                 let force = normal * response.normal_force + response.tangential_force;
@@ -91,7 +91,7 @@ fn largest_difference(n_grains: usize, is_periodic: [bool; 3], n_steps: u64) -> 
         spheres: spheres.clone(),
         pair,
     };
-    let law = HertzMindlin::<false, false>;
+    let law = HertzMindlin::new(Tail::CutCorrected);
     let mut bed = Bed::new(spheres, settings, table(0.5, 0.5, Tail::CutCorrected), law).unwrap();
     let mut most_contacts = 0;
     for _ in 0..n_steps {

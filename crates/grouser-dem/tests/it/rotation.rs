@@ -3,11 +3,11 @@
 use crate::*;
 
 /// Made for circles too, so that one type serves every shape.
-type Angular = Rotating<HertzMindlin<false, false>, Tilting<true>>;
+type Angular = Rotating<HertzMindlin, Tilting<true>>;
 
 fn angular(shape: GrainShape, inertia: GrainInertia) -> Angular {
     let rotation = Tilting::new(&TiltingSettings { inertia, ..TiltingSettings::of(shape) }).unwrap();
-    Rotating { forces: HertzMindlin, rotation }
+    Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation }
 }
 
 fn column_of_angular_grains(n: usize) -> Bed<Angular> {
@@ -31,12 +31,12 @@ fn free_rotation_about_the_middle_axis_keeps_energy_and_angular_momentum() {
     let settings =
         TiltingSettings { inertia: GrainInertia::ThinRod, ..TiltingSettings::of(GrainShape::Planes(planes)) };
     let rotation = PlaneTilting::new(&settings).unwrap();
-    let law = Rotating { forces: HertzMindlin::<false, false>, rotation };
+    let law = Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation };
     let bead = sphere(Vec3::zeros(), 0.01, 2600.0, 0);
     let mut bed = Bed::new(vec![bead], empty_space(), table(0.5, 0.5, Tail::CutCorrected), law).unwrap();
     // The middle axis with a push: the grain turns over and over. A hundredth of a radian a step.
     bed.grains_mut().spheres[0].spin = Vector::new(1e-3, 500.0, 1e-3);
-    let state = |bed: &Bed<Rotating<HertzMindlin<false, false>, PlaneTilting>>| {
+    let state = |bed: &Bed<Rotating<HertzMindlin, PlaneTilting>>| {
         (bed.grains().kinetic_energy()[1], bed.grains().spin_momentum(0))
     };
     let (energy, momentum) = state(&bed);
@@ -172,7 +172,7 @@ fn alike_on_every_instruction_set<const IS_ROUND: bool>(shape: GrainShape) {
     let rotation = Tilting::<IS_ROUND>::new(&settings).unwrap();
     let after = |set| {
         let (spheres, settings) = falling_column::<F64>(300, 7);
-        let law = Rotating { forces: HertzMindlin::<false, false>, rotation };
+        let law = Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation };
         let mut bed = Bed::new(spheres, settings, table(0.5, 0.7, Tail::CutCorrected), law).unwrap();
         bed.grains_mut().turn_randomly(3);
         for sphere in &mut bed.grains_mut().spheres {
@@ -232,7 +232,7 @@ fn random_orientations_are_reproducible_and_without_preference() {
         let mut settings = empty_space();
         settings.has_ledger = false;
         let mut bed =
-            Bed::new(spheres.clone(), settings, table(0.5, 0.5, Tail::Keep), HertzMindlin::<true, false>)
+            Bed::new(spheres.clone(), settings, table(0.5, 0.5, Tail::Keep), HertzMindlin::new(Tail::Keep))
                 .unwrap();
         bed.grains_mut().turn_randomly(seed);
         let kept = bed.grains().orientations.clone().unwrap();
@@ -258,7 +258,8 @@ fn circular_figures_move_a_bed_as_spheres_do() {
     let (spheres, settings) = falling_column::<F64>(60, 7);
     let make = table(0.5, 0.5, Tail::CutCorrected);
     let mut free =
-        Bed::new(spheres.clone(), settings.clone(), make.clone(), HertzMindlin::<false, false>).unwrap();
+        Bed::new(spheres.clone(), settings.clone(), make.clone(), HertzMindlin::new(Tail::CutCorrected))
+            .unwrap();
     let mut tilting = Bed::new(spheres, settings, make, round).unwrap();
     go_on(&mut free, 4000);
     go_on(&mut tilting, 4000);
@@ -279,7 +280,7 @@ fn rolled<R: RotationLaw<f64>>(rotation: R) -> f64 {
     let (sin, cos) = 10_f64.to_radians().sin_cos();
     settings.gravity = Vec3::new(sin, 0.0, -cos) * 9.81;
     let bead: Sphere = sphere(Vec3::new(0.0, 0.0, 0.01), 0.01, 2600.0, 0);
-    let law = Rotating { forces: HertzMindlin::<false, false>, rotation };
+    let law = Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation };
     let mut bed = Bed::new(vec![bead], settings, table(0.1, 0.8, Tail::CutCorrected), law).unwrap();
     go_on(&mut bed, 20_000);
     bed.grains().spheres[0].position.x
@@ -301,7 +302,7 @@ fn rolling_resistance_holds_a_sphere_on_a_slope_below_its_friction() {
 fn unrest<R: RotationLaw<f64>>(rotation: R) -> [f64; 2] {
     let (spheres, settings) = falling_column::<F64>(200, 7);
     let scale: f64 = spheres.iter().map(|sphere| sphere.mass * 9.81 * sphere.radius).sum();
-    let law = Rotating { forces: HertzMindlin::<false, false>, rotation };
+    let law = Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation };
     let mut bed = Bed::new(spheres, settings, table(0.5, 0.5, Tail::CutCorrected), law).unwrap();
     bed.grains_mut().turn_randomly(3);
     let run = |bed: &mut Bed<_>, n_steps| bed.run(n_steps, 4e-5, |_| Ok::<(), Failure>(())).unwrap();
@@ -331,8 +332,10 @@ fn cubes_at_55_degrees(build_up: f64) -> f64 {
     let (spheres, settings) = falling_column::<F64>(200, 7);
     let scale: f64 = spheres.iter().map(|sphere| sphere.mass * 9.81 * sphere.radius).sum();
     let cubes = TiltingSettings { build_up, ..TiltingSettings::of(GrainShape::Cube) };
-    let law =
-        Rotating { forces: HertzMindlin::<false, false>, rotation: Tilting::<false>::new(&cubes).unwrap() };
+    let law = Rotating {
+        forces: HertzMindlin::new(Tail::CutCorrected),
+        rotation: Tilting::<false>::new(&cubes).unwrap(),
+    };
     let mut bed = Bed::new(spheres, settings, table(0.3, 0.3, Tail::CutCorrected), law).unwrap();
     bed.grains_mut().turn_randomly(3);
     go_on(&mut bed, 30_000);

@@ -75,14 +75,14 @@ proptest! {
     ) {
         let (spheres, settings) = cloud(n, 10_f64.powf(exponent), is_periodic, seed);
         let expected = all_pairs(&spheres, &settings.domain);
-        let mut bed = Bed::new(spheres, settings, table(0.5, 0.5, Tail::Keep), HertzMindlin::<true, false>).unwrap();
+        let mut bed = Bed::new(spheres, settings, table(0.5, 0.5, Tail::Keep), HertzMindlin::new(Tail::Keep)).unwrap();
         bed.renew_lists().unwrap();
         bed.contact_forces(0.0);
         prop_assert_eq!(listed_pairs(&bed), expected);
     }
 }
 
-type Law = HertzMindlin<false, false>;
+type Law = HertzMindlin;
 
 /// Graded grains of `ratio` to one in a periodic column, on their way down.
 fn graded_column(n: usize, ratio: f64, speed: f64) -> Bed<Law> {
@@ -93,7 +93,8 @@ fn graded_column(n: usize, ratio: f64, speed: f64) -> Bed<Law> {
     for sphere in &mut spheres {
         sphere.velocity.z = -speed;
     }
-    Bed::new(spheres, settings, table(0.5, 0.5, Tail::CutCorrected), HertzMindlin).unwrap()
+    Bed::new(spheres, settings, table(0.5, 0.5, Tail::CutCorrected), HertzMindlin::new(Tail::CutCorrected))
+        .unwrap()
 }
 
 #[test]

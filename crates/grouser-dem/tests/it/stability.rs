@@ -3,7 +3,7 @@
 use crate::*;
 
 /// What 3,000 steps of `share` of the bound make out of nothing, over what contacts store [-].
-fn gained(bed: &Bed<Rotating<HertzMindlin<false, false>, ElasticPlasticRolling>>, share: f64) -> f64 {
+fn gained(bed: &Bed<Rotating<HertzMindlin, ElasticPlasticRolling>>, share: f64) -> f64 {
     let (mut low, mut high) = (1e-7, 1e-2);
     while high / low > 1.001 {
         let middle = f64::sqrt(low * high);
@@ -26,7 +26,7 @@ fn loaded_beds_keep_their_energy_up_to_the_limit_and_gain_it_at_twice_the_limit(
         let (spheres, mut settings) = falling_column::<F64>(300, 1);
         settings.gravity = Vec3::z() * -gravity;
         let rotation = ElasticPlasticRolling::new(0.5, 0.3).unwrap();
-        let law = Rotating { forces: HertzMindlin::<false, false>, rotation };
+        let law = Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation };
         let between = table(0.4, friction, Tail::CutCorrected);
         let mut bed = Bed::new(spheres, settings, between, law).unwrap();
         bed.set_largest_overlap(0.8);

@@ -3,7 +3,8 @@
 use crate::scene::{Dials, Figures, Forces, Precision as Named, RestitutionTail, Rolling, Rotation};
 use grouser_contact::{
     Body, ConstantRolling, Contact, ContactLaw, Couples, Dlr, ElasticPlasticRolling, F32, F64, HertzMindlin,
-    Mixed, PairProperties, ParameterError, PlaneTilting, Precision, Response, Rotating, RotationLaw, Tilting,
+    Mixed, PairProperties, ParameterError, PlaneTilting, Precision, Response, Rotating, RotationLaw, Tail,
+    Tilting,
 };
 use serde::{Deserialize, Serialize};
 use std::marker::PhantomData;
@@ -64,9 +65,14 @@ impl<P: Precision, L: ContactLaw<P::Real>> ContactLaw<P::Real> for InPrecision<P
     }
 }
 
+/// A law in precision `P`.
+fn in_precision<P: Precision, L: ContactLaw<P::Real>>(law: L) -> InPrecision<P, L> {
+    InPrecision { law, precision: PhantomData }
+}
+
 /// A law in double precision.
 fn double<L: ContactLaw<f64>>(law: L) -> InPrecision<F64, L> {
-    InPrecision { law, precision: PhantomData }
+    in_precision(law)
 }
 
 /// Work that is done with whatever law the dials name.
@@ -77,31 +83,23 @@ pub trait WithLaw {
     fn with<L: Law>(self, law: L) -> Self::Output;
 }
 
-/// Calls `work` with the law that `dials` name. Forces other than Hertz–Mindlin with a cut tail are built with free, fixed and (Dlr)
-/// tilting grains only: each further pair is a whole engine more to compile.
+/// Calls `work` with the law that `dials` name. Forces other than Hertz–Mindlin are built with free, fixed and tilting grains only,
+/// precisions other than double with free and fixed ones: each further pair is a whole engine more to compile.
 ///
 /// # Errors
 /// When a constant is outside its range or the combination is not built; a checked scenario excludes both.
 pub fn with_law<W: WithLaw>(dials: &Dials, work: W) -> Result<W::Output, ParameterError> {
+    let hertz_mindlin = HertzMindlin::new(match dials.restitution_tail {
+        RestitutionTail::Keep => Tail::Keep,
+        RestitutionTail::CutCorrected => Tail::CutCorrected,
+    });
     let turns_as_sphere = matches!(dials.rotation, Rotation::Free | Rotation::Fixed);
     match (dials.forces, turns_as_sphere, dials.precision) {
-        (Forces::HertzMindlin, true, Named::F64) => Ok(in_precision::<F64, W>(dials, work)),
-        (Forces::HertzMindlin, true, Named::Mixed) => Ok(in_precision::<Mixed, W>(dials, work)),
-        (Forces::HertzMindlin, true, Named::F32) => Ok(in_precision::<F32, W>(dials, work)),
+        (Forces::HertzMindlin, true, Named::Mixed) => Ok(work.with(in_precision::<Mixed, _>(hertz_mindlin))),
+        (Forces::HertzMindlin, true, Named::F32) => Ok(work.with(in_precision::<F32, _>(hertz_mindlin))),
+        (Forces::HertzMindlin, _, Named::F64) => with_hertz_mindlin(hertz_mindlin, &dials.rotation, work),
         (Forces::Dlr(dlr), _, Named::F64) => with_dlr(dlr.law()?, &dials.rotation, work),
-        (Forces::HertzMindlin, false, Named::F64)
-            if dials.restitution_tail == RestitutionTail::CutCorrected =>
-        {
-            with_hertz_mindlin(&dials.rotation, work)
-        }
         _ => not_built(),
-    }
-}
-
-fn in_precision<P: Precision, W: WithLaw>(dials: &Dials, work: W) -> W::Output {
-    match dials.restitution_tail {
-        RestitutionTail::Keep => work.with(InPrecision::<P, HertzMindlin<true, false>>::default()),
-        RestitutionTail::CutCorrected => work.with(InPrecision::<P, HertzMindlin<false, false>>::default()),
     }
 }
 
@@ -115,8 +113,11 @@ fn with_dlr<W: WithLaw>(forces: Dlr, rotation: &Rotation, work: W) -> Result<W::
     }
 }
 
-fn with_hertz_mindlin<W: WithLaw>(rotation: &Rotation, work: W) -> Result<W::Output, ParameterError> {
-    let forces = HertzMindlin::<false, false>;
+fn with_hertz_mindlin<W: WithLaw>(
+    forces: HertzMindlin,
+    rotation: &Rotation,
+    work: W,
+) -> Result<W::Output, ParameterError> {
     Ok(match *rotation {
         Rotation::Free | Rotation::Fixed => work.with(double(forces)),
         Rotation::Rolling(Rolling::Constant { friction }) => {
@@ -146,8 +147,8 @@ fn with_hertz_mindlin<W: WithLaw>(rotation: &Rotation, work: W) -> Result<W::Out
 }
 
 fn not_built<T>() -> Result<T, ParameterError> {
-    let expected = "Hertz-Mindlin forces with the tail CutCorrected in F64 for this rotation; single and mixed precision turn freely or not at all; with Dlr or the tail Keep grains turn \
-                    freely or not at all, with Dlr also as boxes";
+    let expected = "Hertz-Mindlin forces in F64 for this rotation; in single and mixed precision grains turn freely or not at all, with \
+                    Dlr freely, not at all, or as boxes";
     Err(ParameterError { name: "combination of forces and rotation", value: f64::NAN, expected })
 }
 
@@ -207,8 +208,10 @@ mod tests {
             "Tilting(shape: Bar(aspect_ratio: 0.5), arms: LongSide)",
             "Tilting(shape: Disc(aspect_ratio: 0.3), inertia: ThinRod)",
         ] {
-            possible(&format!("(rotation: {rotation})"))
-                .unwrap_or_else(|error| panic!("{rotation}: {error}"));
+            for tail in ["CutCorrected", "Keep"] {
+                possible(&format!("(rotation: {rotation}, restitution_tail: {tail})"))
+                    .unwrap_or_else(|error| panic!("{rotation}, {tail}: {error}"));
+            }
         }
         let dlr = "Dlr(tangential_stiffness_n_m: 1e4, normal_damping_n_s_m: 0.1)";
         possible(&format!("(forces: {dlr}, rotation: Tilting(shape: Plate(aspect_ratio: 0.2)))")).unwrap();
@@ -218,8 +221,8 @@ mod tests {
     fn what_cannot_be_is_refused_with_the_reason() {
         let error = possible("(rotation: Tilting(shape: Angular(aspect_ratio: 2)))").unwrap_err();
         assert_eq!((error.name, error.value), ("aspect ratio", 2.0));
-        let error = possible("(restitution_tail: Keep, rotation: Tilting(shape: Cube))").unwrap_err();
-        assert!(error.expected.contains("CutCorrected"), "{error}");
+        let error = possible("(precision: Mixed, rotation: Tilting(shape: Cube))").unwrap_err();
+        assert!(error.expected.contains("F64"), "{error}");
         assert_eq!(
             possible("(rotation: Rolling(Constant(friction: -1)))").unwrap_err().name,
             "rolling friction"

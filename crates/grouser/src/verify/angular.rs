@@ -28,11 +28,11 @@ pub(super) fn one<R: RotationLaw<f64>>(
     settings: BedSettings,
     friction: f64,
     turn: Orientation,
-) -> Bed<Rotating<HertzMindlin<false, false>, R>> {
+) -> Bed<Rotating<HertzMindlin, R>> {
     let between = Interaction { restitution: 0.1, friction };
     let table = PairTable::new(&[SAND], Tail::CutCorrected, |_, _| between).expect("sound");
     let bead: Sphere = sphere(Vec3::new(0.0, 0.0, RADIUS), RADIUS, SAND.density_kg_m3, 0);
-    let law = Rotating { forces: HertzMindlin, rotation };
+    let law = Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation };
     let mut bed = Bed::new(vec![bead], settings, table, law).expect("sound");
     bed.grains_mut().track_orientations();
     bed.grains_mut().orientations.as_mut().expect("tracked")[0] = turn;

@@ -95,7 +95,7 @@ fn squeezed<R: RotationLaw<f64>>(rotation: R, friction: f64) -> f64 {
     }
     let between = Interaction { restitution: 0.5, friction };
     let table = PairTable::new(&[SAND], Tail::CutCorrected, |_, _| between).expect("sound");
-    let law = Rotating { forces: HertzMindlin::<false, false>, rotation };
+    let law = Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation };
     let mut bed = Bed::new(spheres, BedSettings { has_ledger: true, ..space() }, table, law).expect("sound");
     bed.grains_mut().turn_randomly(5);
     let begun = bed.energy().stored();
@@ -128,7 +128,7 @@ fn forty_at_rest() -> [f64; 2] {
     let between = Interaction { restitution: 0.1, friction: 26_f64.to_radians().tan() };
     let table = PairTable::new(&[SAND], Tail::CutCorrected, |_, _| between).expect("sound");
     let rotation: Tilting = tilting(GrainShape::Angular { aspect_ratio: 0.1 }, 5e-3);
-    let law = Rotating { forces: HertzMindlin::<false, false>, rotation };
+    let law = Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation };
     let mut bed = Bed::new(spheres, settings, table, law).expect("sound");
     bed.grains_mut().turn_randomly(5);
     let after = |bed: &mut Bed<_>, steps| {

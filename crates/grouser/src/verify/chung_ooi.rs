@@ -4,7 +4,7 @@
 use super::Row;
 use super::bodies::{IMPACT_FRACTION, Impact, impact_step, space, step_of, step_until_parted, wall};
 use crate::run::COLLISION_FRACTION;
-use grouser_contact::{ContactLaw, F64, HertzMindlin, Interaction, Material, PairTable, Sphere, Vector};
+use grouser_contact::{F64, HertzMindlin, Interaction, Material, PairTable, Sphere, Tail, Vector};
 use grouser_dem::{Bed, sphere};
 use grouser_geometry::Vec3;
 
@@ -15,11 +15,11 @@ const ALUMINIUM_OXIDE: Material = Material { young_pa: 380e9, poisson: 0.23, den
 const RIGID: Material = Material { young_pa: 1e30, poisson: 0.30, density_kg_m3: 7800.0 };
 
 /// The law of the published curves: dashpot with its tail, spring of total displacement.
-type Published = HertzMindlin<true, true>;
+const PUBLISHED: HertzMindlin<true> = HertzMindlin { tail: Tail::Keep };
 
 /// Two spheres or a sphere and a rigid wall, of `material`, with one interaction for all.
 fn table(material: Material, restitution: f64, friction: f64) -> PairTable {
-    PairTable::new(&[material, RIGID], Published::TAIL, |_, _| Interaction { restitution, friction })
+    PairTable::new(&[material, RIGID], Tail::Keep, |_, _| Interaction { restitution, friction })
         .expect("published constants are sound")
 }
 
@@ -50,7 +50,7 @@ pub fn test_1() -> Vec<Row> {
     let table = table(GLASS, 1.0, 0.35);
     let dt =
         impact_step(&GLASS, radius, table.pair(0, 0), (radius / 2.0, spheres[0].mass / 2.0), 2.0 * speed);
-    let bed = Bed::new(spheres, space(), table, Published::default()).expect("sound");
+    let bed = Bed::new(spheres, space(), table, PUBLISHED).expect("sound");
     let Impact { peak_force, contact_time, .. } = step_until_parted(bed, dt);
     vec![
         Row::relative(case, "largest force", "N", peak_force, (10_696.889, 1e-3)),
@@ -65,7 +65,7 @@ pub fn test_2() -> Vec<Row> {
     let body = at_wall(ALUMINIUM, radius, Vector::new(0.0, 0.0, -speed));
     let table = table(ALUMINIUM, 1.0, 0.0);
     let dt = impact_step(&ALUMINIUM, radius, table.pair(0, 1), (radius, body.mass), speed);
-    let bed = Bed::new(vec![body], wall(1), table, Published::default()).expect("sound");
+    let bed = Bed::new(vec![body], wall(1), table, PUBLISHED).expect("sound");
     let Impact { peak_force, contact_time, .. } = step_until_parted(bed, dt);
     vec![
         Row::relative(case, "largest force", "N", peak_force, (11_369.858, 1e-3)),
@@ -75,12 +75,11 @@ pub fn test_2() -> Vec<Row> {
 
 /// Restitution obtained for restitution asked, with both tails.
 pub fn test_3() -> Vec<Row> {
-    fn obtained<const KEEP: bool>(asked: f64) -> f64 {
+    fn obtained(tail: Tail, asked: f64) -> f64 {
         let (radius, speed) = (0.0025, 3.9);
         let body = at_wall(ALUMINIUM_OXIDE, radius, Vector::new(0.0, 0.0, -speed));
-        let law = HertzMindlin::<KEEP, false>;
+        let law = HertzMindlin::new(tail);
         let between = Interaction { restitution: asked, friction: 0.0 };
-        let tail = HertzMindlin::<KEEP, false>::TAIL;
         let table = PairTable::new(&[ALUMINIUM_OXIDE, RIGID], tail, |_, _| between).expect("sound");
         let dt = impact_step(&ALUMINIUM_OXIDE, radius, table.pair(0, 1), (radius, body.mass), speed);
         let bed = Bed::new(vec![body], wall(1), table, law).expect("sound");
@@ -90,12 +89,12 @@ pub fn test_3() -> Vec<Row> {
     let asked = [0.2, 0.4, 0.6, 0.8, 1.0];
     let rows = asked.map(|e| {
         [
-            Row::absolute(case, format!("e = {e}, tail kept"), "-", obtained::<true>(e), (e, 1e-3)),
+            Row::absolute(case, format!("e = {e}, tail kept"), "-", obtained(Tail::Keep, e), (e, 1e-3)),
             Row::absolute(
                 case,
                 format!("e = {e}, tail cut and corrected"),
                 "-",
-                obtained::<false>(e),
+                obtained(Tail::CutCorrected, e),
                 (e, 1e-3),
             ),
         ]
@@ -139,19 +138,20 @@ const REBOUND_ANGLE: [(f64, f64); 8] = [
 ];
 
 /// Tangential restitution, spin and rebound angle of the contact point after an oblique impact.
-fn oblique<L: ContactLaw<f64> + Default>(angle_deg: f64) -> [f64; 3] {
-    oblique_in_steps::<L>(angle_deg, IMPACT_FRACTION)
+fn oblique<const TOTAL_DISPLACEMENT: bool>(angle_deg: f64) -> [f64; 3] {
+    oblique_in_steps::<TOTAL_DISPLACEMENT>(angle_deg, IMPACT_FRACTION)
 }
 
 /// The same with steps of a share of the collision time.
-fn oblique_in_steps<L: ContactLaw<f64> + Default>(angle_deg: f64, fraction: f64) -> [f64; 3] {
+fn oblique_in_steps<const TOTAL_DISPLACEMENT: bool>(angle_deg: f64, fraction: f64) -> [f64; 3] {
     let (radius, speed) = (0.0025, 3.9);
     let (sin, cos) = angle_deg.to_radians().sin_cos();
     let body = at_wall(ALUMINIUM_OXIDE, radius, Vector::new(speed * sin, 0.0, -speed * cos));
     let table = table(ALUMINIUM_OXIDE, 0.98, 0.092);
     let pair = table.pair(0, 1);
     let dt = step_of(fraction, &ALUMINIUM_OXIDE, radius, pair, (radius, body.mass), speed);
-    let bed = Bed::new(vec![body], wall(1), table, L::default()).expect("sound");
+    let law = HertzMindlin::<TOTAL_DISPLACEMENT> { tail: Tail::Keep };
+    let bed = Bed::new(vec![body], wall(1), table, law).expect("sound");
     let after = step_until_parted(bed, dt).bodies[0];
     // About +y the body turns forwards; the published sign is that of clockwise spin against the motion.
     let (tangential, spin) = (after.velocity.x, after.spin.y);
@@ -166,12 +166,12 @@ pub fn test_4() -> Vec<Row> {
         ("chung-ooi-4", "gross sliding: Δv_t = μ (1 + e) v_n, ω = 5 μ (1 + e) v_n/(2 r) · mean arm/r");
     let mut rows = Vec::new();
     for (angle, reference) in TANGENTIAL_RESTITUTION {
-        let [found, ..] = oblique::<Published>(angle);
+        let [found, ..] = oblique::<true>(angle);
         let name = format!("tangential restitution at {angle:.1}°");
         rows.push(Row::absolute(published, name, "-", found, (reference, 0.012)));
     }
     for (angle, reference) in SPIN {
-        let [_, found, _] = oblique::<Published>(angle);
+        let [_, found, _] = oblique::<true>(angle);
         rows.push(Row::absolute(
             published,
             format!("spin at {angle:.1}°"),
@@ -181,7 +181,7 @@ pub fn test_4() -> Vec<Row> {
         ));
     }
     for (angle, reference) in REBOUND_ANGLE {
-        let [.., found] = oblique::<Published>(angle);
+        let [.., found] = oblique::<true>(angle);
         rows.push(Row::absolute(
             published,
             format!("rebound angle at {angle:.1}°"),
@@ -195,10 +195,9 @@ pub fn test_4() -> Vec<Row> {
         let restitution = 1.0 - impulse / (3.9 * angle.to_radians().sin());
         // The force acts at r − δ; weighted with Hertz's force the mean of δ over an impact is B(1.4, ½)/2 δ_max.
         let arm = 1.0 - 0.81757 * 8.0888e-6 / 0.0025 * angle.to_radians().cos().powf(0.8);
-        for (law, [found, spin, _]) in [
-            ("total displacement", oblique::<Published>(angle)),
-            ("passive spring", oblique::<HertzMindlin<true, false>>(angle)),
-        ] {
+        for (law, [found, spin, _]) in
+            [("total displacement", oblique::<true>(angle)), ("passive spring", oblique::<false>(angle))]
+        {
             let name = |what: &str| format!("{what} at {angle}°, {law}");
             rows.push(Row::relative(
                 sliding,
@@ -223,8 +222,8 @@ pub fn test_4() -> Vec<Row> {
 pub fn default_step() -> Vec<Row> {
     let case = ("oblique impacts in default steps", "the same impact in steps forty times shorter");
     let row = |angle: f64| {
-        let [[found, ..], [fine, ..]] = [COLLISION_FRACTION, IMPACT_FRACTION]
-            .map(|fraction| oblique_in_steps::<Published>(angle, fraction));
+        let [[found, ..], [fine, ..]] =
+            [COLLISION_FRACTION, IMPACT_FRACTION].map(|fraction| oblique_in_steps::<true>(angle, fraction));
         Row::absolute(case, format!("tangential restitution at {angle}°"), "-", found, (fine, 0.01))
     };
     [10.0, 20.0, 30.0, 45.0, 70.0].map(row).to_vec()
@@ -241,7 +240,7 @@ pub fn test_7() -> Vec<Row> {
         spheres[1].spin.y = -spin;
         let table = table(material, 0.5, 0.4);
         let dt = impact_step(&material, 0.1, table.pair(0, 0), (0.05, spheres[0].mass / 2.0), 0.4);
-        let bed = Bed::new(spheres, space(), table, Published::default()).expect("sound");
+        let bed = Bed::new(spheres, space(), table, PUBLISHED).expect("sound");
         let after = step_until_parted(bed, dt).bodies[0];
         rows.push(Row::absolute(
             case,

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 pub(super) type Contacts = DeformingContacts<Vector<f64>>;
 
-pub(super) const LAW: HertzMindlin<false, false> = HertzMindlin;
+pub(super) const LAW: HertzMindlin = HertzMindlin::new(Tail::CutCorrected);
 /// Radius of the bead [m].
 pub(super) const RADIUS: f64 = 0.01;
 /// A bead and a surface of the same stuff.

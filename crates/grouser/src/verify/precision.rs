@@ -2,11 +2,11 @@
 
 use super::Row;
 use super::bodies::{space, wall};
-use grouser_contact::{F32, HertzMindlin, Interaction, Material, Mixed, PairTable, Precision, Real};
+use grouser_contact::{F32, HertzMindlin, Interaction, Material, Mixed, PairTable, Precision, Real, Tail};
 use grouser_dem::{Bed, BedSettings, Failure, sphere};
 use grouser_geometry::Vec3;
 
-type Law = HertzMindlin<false, false>;
+type Law = HertzMindlin;
 
 const SAND: Material = Material { young_pa: 1e7, poisson: 0.3, density_kg_m3: 2600.0 };
 const RADIUS: f64 = 4e-3;
@@ -28,7 +28,8 @@ fn rows<P: Precision>(name: &str, [of_impact, of_stack]: [f64; 2]) -> Vec<Row> {
 }
 
 fn table<P: Precision>(restitution: f64) -> PairTable<P::Real> {
-    PairTable::new(&[SAND], Law::TAIL, |_, _| Interaction { restitution, friction: 0.5 }).expect("sound")
+    PairTable::new(&[SAND], Tail::CutCorrected, |_, _| Interaction { restitution, friction: 0.5 })
+        .expect("sound")
 }
 
 /// Two grains that meet head on, elastically and with loss.

@@ -2,11 +2,11 @@
 
 use super::Row;
 use super::bodies::wall;
-use grouser_contact::{HertzMindlin, Interaction, Material, PairTable, Sphere};
+use grouser_contact::{HertzMindlin, Interaction, Material, PairTable, Sphere, Tail};
 use grouser_dem::{Bed, BedSettings, sphere};
 use grouser_geometry::Vec3;
 
-type Law = HertzMindlin<false, false>;
+type Law = HertzMindlin;
 
 const STEEL: Material = Material { young_pa: 2e9, poisson: 0.3, density_kg_m3: 7800.0 };
 const RADIUS: f64 = 0.01;
@@ -17,7 +17,7 @@ const STEP: f64 = 6e-6;
 /// Bodies on a plane under a given gravity.
 fn bed(bodies: Vec<Sphere>, gravity: Vec3, restitution: f64, friction: f64) -> Bed<Law> {
     let between = Interaction { restitution, friction };
-    let table = PairTable::new(&[STEEL], Law::TAIL, |_, _| between).expect("sound");
+    let table = PairTable::new(&[STEEL], Tail::CutCorrected, |_, _| between).expect("sound");
     Bed::new(bodies, BedSettings { gravity, ..wall(0) }, table, Law::default()).expect("sound")
 }
 
@@ -27,11 +27,13 @@ fn ball(height: f64) -> Sphere {
 
 /// A ball that rests on the plane with the overlap that carries `load` times its weight under `gravity`.
 fn resting(gravity: f64) -> Sphere {
-    let modulus =
-        PairTable::<f64>::new(&[STEEL], Law::TAIL, |_, _| Interaction { restitution: 1.0, friction: 0.0 })
-            .expect("sound")
-            .pair(0, 0)
-            .normal_modulus;
+    let modulus = PairTable::<f64>::new(&[STEEL], Tail::CutCorrected, |_, _| Interaction {
+        restitution: 1.0,
+        friction: 0.0,
+    })
+    .expect("sound")
+    .pair(0, 0)
+    .normal_modulus;
     let mass = ball(RADIUS).mass;
     ball(RADIUS - (mass * gravity / (modulus * RADIUS.sqrt())).powf(2.0 / 3.0))
 }
