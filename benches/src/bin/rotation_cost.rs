@@ -3,7 +3,7 @@
 //! The bed of `dem_throughput`: radius 4 mm ± 5 %, 2600 kg/m³, E = 10 MPa, ν = 0.3, friction and restitution 0.5, time step 40 µs,
 //! 0.2 m × 0.2 m periodic, floor at z = 0. It settles as spheres; then each law takes over from the same state.
 
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use grouser_contact::*;
 use grouser_dem::*;
 use grouser_geometry::Vec3;
@@ -36,6 +36,16 @@ struct Arguments {
     /// Only the laws whose name contains this, the first of which stands for free rotation in the ratios
     #[arg(long, default_value = "")]
     only: String,
+    #[arg(long, value_enum, default_value_t = Scalars::F64)]
+    precision: Scalars,
+}
+
+/// Scalars of positions and of contact arithmetic.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Scalars {
+    F64,
+    Mixed,
+    F32,
 }
 
 const TIME_STEP: f64 = 4e-5;
@@ -49,7 +59,7 @@ trait Timed {
     fn n_rebuilds(&self) -> u64;
 }
 
-impl<L: ContactLaw<f64>> Timed for Bed<L> {
+impl<P: Precision, L: ContactLaw<P::Real>> Timed for Bed<L, P> {
     fn run(&mut self, n_steps: u64) -> Result<(), Failure> {
         Bed::run(self, n_steps, TIME_STEP, |_| Ok::<(), Failure>(()))
     }
@@ -67,7 +77,15 @@ impl<L: ContactLaw<f64>> Timed for Bed<L> {
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::parse();
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global()?;
-    let spheres = match &arguments.state {
+    match arguments.precision {
+        Scalars::F64 => compare::<F64>(&arguments),
+        Scalars::Mixed => compare::<Mixed>(&arguments),
+        Scalars::F32 => compare::<F32>(&arguments),
+    }
+}
+
+fn compare<P: Precision>(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let spheres: Vec<Sphere<P>> = match &arguments.state {
         Some(path) => read(path)?,
         None => settled(arguments.grains)?,
     };
@@ -100,7 +118,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             *total += time;
         }
     }
-    println!("{n_grains} grains, f64, one thread");
+    println!("{n_grains} grains, {:?}, one thread", arguments.precision);
     for ((time, all), (name, bed)) in fastest.iter().zip(&total).zip(&beds) {
         let grain_steps = n_grains * arguments.steps as f64 * 1e-6;
         let (rate, mean) = (grain_steps / time, grain_steps * f64::from(arguments.repeats) / all);
@@ -115,24 +133,28 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn rotating<R: RotationLaw<f64>>(spheres: &[Sphere], rotation: R) -> Result<Box<dyn Timed>, Box<dyn Error>> {
-    boxed(spheres, Rotation::Free, Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation })
+fn rotating<P: Precision, R: RotationLaw<P::Real>>(
+    spheres: &[Sphere<P>],
+    rotation: R,
+) -> Result<Box<dyn Timed>, Box<dyn Error>> {
+    let forces = HertzMindlin::new(Tail::CutCorrected);
+    boxed(spheres, Rotation::Free, Rotating { forces, rotation })
 }
 
-fn boxed<L: ContactLaw<f64>>(
-    spheres: &[Sphere],
+fn boxed<P: Precision, L: ContactLaw<P::Real>>(
+    spheres: &[Sphere<P>],
     rotation: Rotation,
     law: L,
 ) -> Result<Box<dyn Timed>, Box<dyn Error>> {
     Ok(Box::new(bed(spheres.to_vec(), rotation, law)?))
 }
 
-fn bed<L: ContactLaw<f64>>(
-    spheres: Vec<Sphere>,
+fn bed<P: Precision, L: ContactLaw<P::Real>>(
+    spheres: Vec<Sphere<P>>,
     rotation: Rotation,
     law: L,
-) -> Result<Bed<L>, Box<dyn Error>> {
-    let top = spheres.iter().map(|sphere| sphere.position.z).fold(0.5, f64::max) + 0.01;
+) -> Result<Bed<L, P>, Box<dyn Error>> {
+    let top = spheres.iter().map(|sphere| sphere.position.z.to_f64()).fold(0.5, f64::max) + 0.01;
     let settings = BedSettings {
         domain: domain(top),
         planes: vec![Plane { point: Vec3::zeros(), normal: Vec3::z(), material: 0 }],
@@ -154,17 +176,17 @@ fn domain(top: f64) -> Domain {
 }
 
 /// A random packing that has come to rest as spheres.
-fn settled(n_grains: usize) -> Result<Vec<Sphere>, Box<dyn Error>> {
+fn settled<P: Precision>(n_grains: usize) -> Result<Vec<Sphere<P>>, Box<dyn Error>> {
     let radii = RadiusDistribution::Uniform { from_m: 0.0038, to_m: 0.0042 };
     let layer = Layer { radii, n_grains, density: SAND.density_kg_m3, material: 0 };
-    let packing = random_packing::<F64>(&domain(0.5), &[layer], 1)?;
+    let packing = random_packing::<P>(&domain(0.5), &[layer], 1)?;
     let mut bed = bed(packing, Rotation::Free, HertzMindlin::new(Tail::CutCorrected))?;
     let mut settling = Settling::new(SettleCriterion { longest_s: 10.0, ..Default::default() }, TIME_STEP);
     while settling.advance(&mut bed)?.is_none() {}
     Ok(bed.grains().spheres.clone())
 }
 
-fn read(path: &PathBuf) -> Result<Vec<Sphere>, Box<dyn Error>> {
+fn read<P: Precision>(path: &PathBuf) -> Result<Vec<Sphere<P>>, Box<dyn Error>> {
     let bytes = std::fs::read(path)?;
     let mut text = String::new();
     if path.extension().is_some_and(|end| end == "gz") {
