@@ -4,8 +4,8 @@ use super::Row;
 use super::angular::{RADIUS, SAND, one, orientation, tilting};
 use super::bodies::{space, wall};
 use grouser_contact::{
-    ArmNormalisation, F64, GrainShape, HertzMindlin, Interaction, PairTable, PlaneShape, PlaneTilting,
-    Rotating, RotationLaw, Sphere, Tail, Tilting, TiltingSettings, Vector,
+    ArmNormalisation, ElasticPlasticRolling, F64, GrainShape, HertzMindlin, Interaction, PairTable,
+    PlaneShape, PlaneTilting, Rotating, RotationLaw, Sphere, Tail, Tilting, TiltingSettings, Vector,
 };
 use grouser_dem::{Bed, BedSettings, Failure, Grains, Plane, sphere};
 use grouser_geometry::{Orientation, Vec3};
@@ -58,12 +58,20 @@ pub fn rest_and_extremes() -> Vec<Row> {
             rows.push(Row::absolute(REST, what, "-", missed, (0.0, 5e-5)));
         };
         for (name, law) in bodies {
-            row(name, squeezed(law, friction));
+            row(name, squeezed(law, friction, Tail::CutCorrected));
         }
         for scale in [0.1, 1.0] {
             let name = format!("three rectangles, A = 0.05, s = {scale}");
-            row(&name, squeezed(themselves(scale), friction));
+            row(&name, squeezed(themselves(scale), friction, Tail::CutCorrected));
         }
+        let kept = squeezed(
+            tilting::<false>(GrainShape::Angular { aspect_ratio: small }, 5e-3),
+            friction,
+            Tail::Keep,
+        );
+        row("A = 0.05, tail kept", kept);
+        let rolling = ElasticPlasticRolling::new(0.3, 0.3).expect("sound");
+        row("rolling resistance, tail kept", squeezed(rolling, friction, Tail::Keep));
     }
     rows
 }
@@ -78,7 +86,7 @@ fn contacts_of_the_middle(grains: &Grains<F64>) -> usize {
 }
 
 /// Twelve grains rush onto one in their middle from all sides; what the ledger misses over the kinetic energy at the start.
-fn squeezed<R: RotationLaw<f64>>(rotation: R, friction: f64) -> f64 {
+fn squeezed<R: RotationLaw<f64>>(rotation: R, friction: f64, tail: Tail) -> f64 {
     let golden = 0.5 * (1.0 + 5_f64.sqrt());
     let mut places = vec![Vec3::zeros()];
     for (a, b) in [(1.0, golden), (1.0, -golden), (-1.0, golden), (-1.0, -golden)] {
@@ -94,8 +102,8 @@ fn squeezed<R: RotationLaw<f64>>(rotation: R, friction: f64) -> f64 {
         spheres.push(grain);
     }
     let between = Interaction { restitution: 0.5, friction };
-    let table = PairTable::new(&[SAND], Tail::CutCorrected, |_, _| between).expect("sound");
-    let law = Rotating { forces: HertzMindlin::new(Tail::CutCorrected), rotation };
+    let table = PairTable::new(&[SAND], tail, |_, _| between).expect("sound");
+    let law = Rotating { forces: HertzMindlin::new(tail), rotation };
     let mut bed = Bed::new(spheres, BedSettings { has_ledger: true, ..space() }, table, law).expect("sound");
     bed.grains_mut().turn_randomly(5);
     let begun = bed.energy().stored();
