@@ -1,4 +1,5 @@
-//! What the benches of the workspace share: beds at rest, and figures as a table and as JSON.
+//! What the benches of the workspace share: beds at rest, figures as a table and as JSON, and precision as an argument.
 
 pub mod beds;
 pub mod figures;
+pub mod scalar;

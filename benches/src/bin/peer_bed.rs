@@ -3,6 +3,7 @@
 //! Grains of 4 mm ± 5 %, 2600 kg/m³, E = 10 MPa, ν = 0.3, friction and restitution 0.5, time step 40 µs, periodic in x and y,
 //! floor at z = 0. A grain of type 2 belongs to a frozen rough base: it has a mass that nothing moves, and its weight is borne.
 
+use benches::scalar::Scalar;
 use clap::{Parser, Subcommand, ValueEnum};
 use grouser_contact::{
     F32, F64, HertzMindlin, Interaction, Material, Mixed, PairTable, Precision, Real, Tail,
@@ -74,13 +75,6 @@ struct Run {
     /// Instruction set: the widest of this machine unless named
     #[arg(long, value_enum)]
     set: Option<Set>,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Scalar {
-    F64,
-    Mixed,
-    F32,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

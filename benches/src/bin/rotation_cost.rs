@@ -3,7 +3,8 @@
 //! The bed of `dem_throughput`: radius 4 mm ± 5 %, 2600 kg/m³, E = 10 MPa, ν = 0.3, friction and restitution 0.5, time step 40 µs,
 //! 0.2 m × 0.2 m periodic, floor at z = 0. It settles as spheres; then each law takes over from the same state.
 
-use clap::{Parser, ValueEnum};
+use benches::scalar::Scalar;
+use clap::Parser;
 use grouser_contact::*;
 use grouser_dem::*;
 use grouser_geometry::Vec3;
@@ -36,16 +37,9 @@ struct Arguments {
     /// Only the laws whose name contains this, the first of which stands for free rotation in the ratios
     #[arg(long, default_value = "")]
     only: String,
-    #[arg(long, value_enum, default_value_t = Scalars::F64)]
-    precision: Scalars,
-}
-
-/// Scalars of positions and of contact arithmetic.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Scalars {
-    F64,
-    Mixed,
-    F32,
+    /// Scalars of positions and of contact arithmetic
+    #[arg(long, value_enum, default_value_t = Scalar::F64)]
+    precision: Scalar,
 }
 
 const TIME_STEP: f64 = 4e-5;
@@ -78,9 +72,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::parse();
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global()?;
     match arguments.precision {
-        Scalars::F64 => compare::<F64>(&arguments),
-        Scalars::Mixed => compare::<Mixed>(&arguments),
-        Scalars::F32 => compare::<F32>(&arguments),
+        Scalar::F64 => compare::<F64>(&arguments),
+        Scalar::Mixed => compare::<Mixed>(&arguments),
+        Scalar::F32 => compare::<F32>(&arguments),
     }
 }
 

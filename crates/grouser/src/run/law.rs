@@ -147,8 +147,8 @@ fn with_hertz_mindlin<W: WithLaw>(
 }
 
 fn not_built<T>() -> Result<T, ParameterError> {
-    let expected = "Hertz-Mindlin forces in F64 for this rotation; in single and mixed precision grains turn freely or not at all, with \
-                    Dlr freely, not at all, or as boxes";
+    let expected = "Hertz-Mindlin forces in F64 for this rotation; in single and mixed precision grains turn freely or not at all (tilting \
+                    ones would not come to rest), with Dlr freely, not at all, or as boxes";
     Err(ParameterError { name: "combination of forces and rotation", value: f64::NAN, expected })
 }
 
