@@ -187,11 +187,12 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
     #[inline(always)]
     pub fn work<P: Precision<Real = T>, const HAS_QUADS: bool, const LEDGER: bool>(
         &mut self,
-        places: &[u32],
+        waiting: &Waiting,
         slab: &mut Slab<T, L::Memory>,
         input: &PassInput<P, L>,
     ) {
-        self.gather::<P, HAS_QUADS>(places, slab, input);
+        let places = waiting.places();
+        self.gather::<P, HAS_QUADS>(waiting, slab, input);
         // Groups of lanes: a constant trip count that every vector width divides; constant bounds of their number, without which
         // the compiler looks for lanes behind the last one and works on some of them one at a time.
         for group in (0..BLOCK / GROUP).take_while(|group| group * GROUP < places.len()) {
@@ -200,7 +201,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         for group in (0..BLOCK / GROUP).take_while(|group| group * GROUP < places.len()) {
             self.respond::<LEDGER>(group * GROUP, places.len(), &input.law, input.time_step);
         }
-        self.scatter::<P, HAS_QUADS>(places, slab, input.grains);
+        self.scatter::<P, HAS_QUADS>(waiting, slab, input.grains);
     }
 
     /// Looks at pairs from `next` on, four at a time, until all are seen or the block is full; touching ones fill the lanes
@@ -250,7 +251,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
             for (bit, &pair) in pairs.iter().enumerate().take(end).skip(next) {
                 let touches = self.look_at_one(pair, input, waiting.n());
                 *touching |= u64::from(touches) << bit;
-                waiting.append_one(touches, from + bit as u32);
+                waiting.append_one(touches, from + bit as u32, pair);
             }
             next = end;
         }
@@ -273,14 +274,15 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
         room < P::Coordinate::ZERO
     }
 
-    /// Fills the other lanes with the pairs at `places`.
+    /// Fills the other lanes with the pairs that wait.
     #[inline(always)]
     fn gather<P: Precision<Real = T>, const HAS_QUADS: bool>(
         &mut self,
-        places: &[u32],
+        waiting: &Waiting,
         slab: &Slab<T, L::Memory>,
         input: &PassInput<P, L>,
     ) {
+        let pairs = waiting.pairs();
         let mut is_done = false;
         #[cfg(target_arch = "x86_64")]
         if HAS_QUADS {
@@ -299,32 +301,31 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
                 };
                 let gather = if has_quaternions::<T, L>() { quads::gather::<Q, true> } else { quads::gather::<Q, false> };
                 let (spheres, orientations) = (input.grains.spheres().cast(), input.grains.all_orientations());
-                // SAFETY: as in `look`; a block has room for all places, which are places of pairs; a block of quaternions is
-                // four arrays of lanes; with eights this pass is compiled for AVX-512F and `Q` is `F64`.
+                // SAFETY: as in `look`; a block has room for all that wait; a block of quaternions is four arrays of lanes; with eights this pass is compiled for AVX-512F and `Q` is `F64`.
                 unsafe {
                     if has_eights::<Q>(input.set) {
                         let gather = if has_quaternions::<T, L>() { quads::gather_eight::<true> } else { quads::gather_eight::<false> };
                         let lanes = &*(&raw const lanes).cast();
-                        gather(&slab.pairs, places, input.grains.spheres().cast(), orientations, lanes);
+                        gather(waiting, input.grains.spheres().cast(), orientations, lanes);
                     } else {
-                        gather(&slab.pairs, places, spheres, orientations, &lanes);
+                        gather(waiting, spheres, orientations, &lanes);
                     }
                 }
             });
             is_done = gathered.is_some();
         }
         if !is_done {
-            for (k, &place) in places.iter().enumerate() {
-                self.gather_one(slab.pairs[place as usize], input, k);
+            for (k, &pair) in pairs.iter().enumerate() {
+                self.gather_one(pair, input, k);
             }
         }
-        self.recall::<P, HAS_QUADS>(places, slab);
+        self.recall::<P, HAS_QUADS>(waiting.places(), slab);
         if FrameOf::<T, L>::IS_TRACKED && !(is_done && has_quaternions::<T, L>()) {
-            self.gather_frames(places, slab, input);
+            self.gather_frames(pairs, input);
         }
         if input.table.n_materials() > 1 {
-            for (k, &place) in places.iter().enumerate() {
-                let [i, j] = slab.pairs[place as usize].grains();
+            for (k, pair) in pairs.iter().enumerate() {
+                let [i, j] = pair.grains();
                 self.set_pair(
                     k,
                     input.table,
@@ -413,16 +414,11 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
 
     /// Fills the lanes of orientations.
     #[inline(always)]
-    fn gather_frames<P: Precision<Real = T>>(
-        &mut self,
-        places: &[u32],
-        slab: &Slab<T, L::Memory>,
-        input: &PassInput<P, L>,
-    ) {
-        for (group, four) in places.chunks(4).enumerate() {
+    fn gather_frames<P: Precision<Real = T>>(&mut self, pairs: &[Pair], input: &PassInput<P, L>) {
+        for (group, four) in pairs.chunks(4).enumerate() {
             for body in 0..2 {
                 let frame = |n: usize| {
-                    let pair = slab.pairs[four[n.min(four.len() - 1)] as usize];
+                    let pair = four[n.min(four.len() - 1)];
                     FrameOf::<T, L>::from_quaternion(input.grains.quaternion(pair.grains()[body]))
                 };
                 let frames = [frame(0), frame(1), frame(2), frame(3)];
@@ -564,11 +560,12 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
     #[inline(always)]
     fn scatter<P: Precision<Real = T>, const HAS_QUADS: bool>(
         &mut self,
-        places: &[u32],
+        waiting: &Waiting,
         slab: &mut Slab<T, L::Memory>,
         grains: SharedGrains<P>,
     ) {
-        self.remember::<P, HAS_QUADS>(places, slab);
+        let pairs = waiting.pairs();
+        self.remember::<P, HAS_QUADS>(waiting.places(), slab);
         if !turns_as_sphere::<T, L>() {
             #[cfg(target_arch = "x86_64")]
             if HAS_QUADS {
@@ -581,15 +578,15 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
                     let loads = grains.loads().cast();
                     // SAFETY: as below.
                     unsafe {
-                        quads::scatter_torques::<Q>(&slab.pairs, places, loads, forces, [first, second]);
+                        quads::scatter_torques::<Q>(pairs, loads, forces, [first, second]);
                     }
                 });
                 if scattered.is_some() {
                     return;
                 }
             }
-            for (k, &place) in places.iter().enumerate() {
-                let [i, j] = slab.pairs[place as usize].grains();
+            for (k, pair) in pairs.iter().enumerate() {
+                let [i, j] = pair.grains();
                 let at = |lanes: &[Lanes<T>; 3]| Vector::new(lanes[0].0[k], lanes[1].0[k], lanes[2].0[k]);
                 let force: Vector<T> = at(&self.difference);
                 grains.add_load(i, force, at(&self.spin[0]));
@@ -608,15 +605,15 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
                 let arms = [quads::start(first), quads::start(second)];
                 // SAFETY: as in `gather`; no other slab works on these grains now.
                 unsafe {
-                    quads::scatter::<Q>(&slab.pairs, places, grains.loads().cast(), forces, couples, arms);
+                    quads::scatter::<Q>(pairs, grains.loads().cast(), forces, couples, arms);
                 }
             });
             if scattered.is_some() {
                 return;
             }
         }
-        for (k, &place) in places.iter().enumerate() {
-            let [i, j] = slab.pairs[place as usize].grains();
+        for (k, pair) in pairs.iter().enumerate() {
+            let [i, j] = pair.grains();
             let [fx, fy, fz] = &self.difference;
             let force = Vector::new(fx.0[k], fy.0[k], fz.0[k]);
             let [cx, cy, cz] = &self.velocity;

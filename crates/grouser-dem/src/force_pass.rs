@@ -7,7 +7,7 @@
 
 use crate::block::Block;
 use crate::shared_grains::SharedGrains;
-use crate::slab::{Slab, SlabSums};
+use crate::slab::{Pair, Slab, SlabSums};
 use grouser_contact::{BLOCK, ContactLaw, PairTable, Precision};
 
 /// Runs the expression with `$quads` naming the precision that `$precision` is, where there are registers for it;
@@ -129,13 +129,42 @@ fn dispatch_ledger<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool>(
     }
 }
 
-/// Places of touching pairs that wait for a full block; the lanes of their positions are filled already.
+/// Touching pairs that wait for a full block; the lanes of their positions are filled already.
 pub(crate) struct Waiting {
+    /// Where they stand in the list.
     places: [u32; BLOCK],
+    /// Behind those that wait there are pairs of grains that exist, too.
+    pairs: [Pair; BLOCK],
     n: usize,
 }
 
 impl Waiting {
+    /// Nobody waits.
+    #[inline(always)]
+    fn new() -> Self {
+        Self { places: [0; BLOCK], pairs: [Pair::new(0, 0, 0); BLOCK], n: 0 }
+    }
+
+    /// Those that wait, and behind them some more: whole groups of whatever size divides a block.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub fn pairs_in_groups<const N: usize>(&self) -> &[[Pair; N]] {
+        const { assert!(BLOCK.is_multiple_of(N)) };
+        &self.pairs.as_chunks().0[..self.n.div_ceil(N)]
+    }
+
+    /// Where those that wait stand in the list.
+    #[inline(always)]
+    pub fn places(&self) -> &[u32] {
+        &self.places[..self.n]
+    }
+
+    /// Those that wait.
+    #[inline(always)]
+    pub fn pairs(&self) -> &[Pair] {
+        &self.pairs[..self.n]
+    }
+
     /// How many wait.
     #[inline(always)]
     pub fn n(&self) -> usize {
@@ -155,36 +184,39 @@ impl Waiting {
         self.n <= BLOCK - 8
     }
 
-    /// Appends the first `n` of eight places; there is room for eight.
+    /// Appends the first `n` of eight pairs and their places; there is room for eight.
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
-    pub fn append_of_eight(&mut self, eight: [u32; 8], n: usize) {
+    pub fn append_of_eight(&mut self, places: [u32; 8], pairs: [Pair; 8], n: usize) {
         let end = self.n().min(BLOCK - 8);
-        self.places[end..end + 8].copy_from_slice(&eight);
+        self.places[end..end + 8].copy_from_slice(&places);
+        self.pairs[end..end + 8].copy_from_slice(&pairs);
         self.n += n;
     }
 
-    /// Appends `place` if it touches.
+    /// Appends the pair at `place` if it touches.
     #[inline(always)]
-    pub fn append_one(&mut self, touches: bool, place: u32) {
+    pub fn append_one(&mut self, touches: bool, place: u32, pair: Pair) {
         let n = self.n();
-        self.places[n] = place;
+        (self.places[n], self.pairs[n]) = (place, pair);
         self.n += usize::from(touches);
     }
 
-    /// Appends `from + n` for every bit n of a mask of four bits; there is room for four.
+    /// Appends the pairs at `from + n` for every bit n of a mask of four bits; `pairs` has them in front. There is room for four.
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
-    pub fn append_four(&mut self, mask: usize, from: u32) {
+    pub fn append_four(&mut self, mask: usize, from: u32, pairs: [Pair; 4]) {
         const ORDER: [[u8; 4]; 16] = places_of_bits();
         let four = ORDER[mask & 15].map(|place| from + u32::from(place));
         let n = self.n().min(BLOCK - 4);
         self.places[n..n + 4].copy_from_slice(&four);
+        self.pairs[n..n + 4].copy_from_slice(&pairs);
         self.n += mask.count_ones() as usize;
     }
 }
 
 /// For each mask of four bits the numbers of its bits, first ones first.
+#[cfg(target_arch = "x86_64")]
 const fn places_of_bits() -> [[u8; 4]; 16] {
     let mut table = [[0; 4]; 16];
     let mut mask = 0;
@@ -209,14 +241,14 @@ fn pass<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool, const LEDGE
     input: &PassInput<P, L>,
 ) -> SlabSums {
     block.forget_sums();
-    let mut waiting = Waiting { places: [0; BLOCK], n: 0 };
+    let mut waiting = Waiting::new();
     for word in 0..slab.touched.len() {
         let from = word * 64;
         let end = slab.pairs.len().min(from + 64);
         let (mut touching, mut next) = (0_u64, 0);
         while from + next < end {
             if !waiting.has_room() {
-                block.work::<P, HAS_QUADS, LEDGER>(&waiting.places[..waiting.n], slab, input);
+                block.work::<P, HAS_QUADS, LEDGER>(&waiting, slab, input);
                 waiting.n = 0;
             }
             let pairs = &slab.pairs[from..end];
@@ -231,6 +263,6 @@ fn pass<P: Precision, L: ContactLaw<P::Real>, const HAS_QUADS: bool, const LEDGE
         }
         slab.touched[word] = touching;
     }
-    block.work::<P, HAS_QUADS, LEDGER>(&waiting.places[..waiting.n], slab, input);
+    block.work::<P, HAS_QUADS, LEDGER>(&waiting, slab, input);
     block.totals(input.time_step)
 }

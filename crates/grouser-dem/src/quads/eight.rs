@@ -9,6 +9,9 @@ use grouser_contact::{BLOCK, F64, Sphere};
 use grouser_geometry::Orientation;
 use std::arch::x86_64::*;
 
+/// Rows that stand in front of a register, the second one after each of them behind it, for [`transposed`].
+const ROWS_BESIDE_OTHERS: [usize; 4] = [0, 1, 4, 5];
+
 /// As [`super::look`], eight pairs at a time, until fewer are left or fit.
 ///
 /// # Safety
@@ -29,29 +32,24 @@ pub(crate) unsafe fn look_eight(
         while let Some(eight) = pairs.get(next..).and_then(<[Pair]>::first_chunk::<8>)
             && waiting.has_room_for_eight()
         {
-            let mut grains = [[std::ptr::null::<f64>(); 8]; 2];
-            for n in 0..8 {
-                let [first, second] = eight[n].grains();
-                grains[0][n] = places.spheres.add(first as usize).cast();
-                grains[1][n] = places.spheres.add(second as usize).cast();
-            }
-            let [near, far] = grains;
+            let near = |n: usize| places.spheres.add(eight[n].grains()[0] as usize).cast::<f64>();
+            let far = |n: usize| places.spheres.add(eight[n].grains()[1] as usize).cast::<f64>();
             // From the second to the first, and the first one's radius.
             let mut rows = [_mm512_setzero_pd(); 4];
-            for n in 0..4 {
-                let (first, second) = (two_rows(near[n], near[n + 4]), two_rows(far[n], far[n + 4]));
+            for (n, p) in ROWS_BESIDE_OTHERS.into_iter().enumerate() {
+                let (first, second) = (two_rows(near(p), near(p + 2)), two_rows(far(p), far(p + 2)));
                 rows[n] = _mm512_mask_sub_pd(first, 0b0111_0111, first, second);
             }
             if !Pair::are_within_the_box(eight) {
-                for n in 0..4 {
+                for (n, p) in ROWS_BESIDE_OTHERS.into_iter().enumerate() {
                     let shift = |n: usize| places.shifts.add(eight[n].image()).cast();
-                    rows[n] = _mm512_sub_pd(rows[n], two_rows(shift(n), shift(n + 4)));
+                    rows[n] = _mm512_sub_pd(rows[n], two_rows(shift(p), shift(p + 2)));
                 }
             }
             let [x, y, z, radius] = transposed(rows);
             let other = _mm512_insertf64x4::<1>(
-                _mm512_castpd256_pd512(__m256d::fourths([far[0], far[1], far[2], far[3]])),
-                __m256d::fourths([far[4], far[5], far[6], far[7]]),
+                _mm512_castpd256_pd512(__m256d::fourths([far(0), far(1), far(2), far(3)])),
+                __m256d::fourths([far(4), far(5), far(6), far(7)]),
             );
             // (x² + y²) + (z² − reach²), negative where they touch.
             let reach = _mm512_add_pd(radius, other);
@@ -80,8 +78,11 @@ pub(crate) unsafe fn look_eight(
             }
             let place = _mm256_add_epi32(count, _mm256_set1_epi32((from as usize + next) as i32));
             let mut packed = [0_u32; 8];
+            let mut packed_pairs = [eight[0]; 8];
             _mm256_storeu_si256(packed.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, place));
-            waiting.append_of_eight(packed, mask.count_ones() as usize);
+            let all = _mm512_loadu_si512(eight.as_ptr().cast());
+            _mm512_storeu_si512(packed_pairs.as_mut_ptr().cast(), _mm512_mask_compress_epi64(all, mask, all));
+            waiting.append_of_eight(packed, packed_pairs, mask.count_ones() as usize);
             fetch_memory(places, from as usize + next, 8);
             *touching |= u64::from(mask) << next;
             next += 8;
@@ -90,32 +91,27 @@ pub(crate) unsafe fn look_eight(
     next
 }
 
-/// Fills lanes 0.. with the motion, and with the orientations if `HAS_FRAMES`, of the pairs at `at`.
+/// As [`super::gather`], eight pairs at a time.
 ///
 /// # Safety
-/// As [`super::gather`], on a machine that has AVX-512F; [`BLOCK`] is a multiple of eight.
+/// As [`super::gather`], on a machine that has AVX-512F.
 #[target_feature(enable = "avx2,avx512f")]
 pub(crate) unsafe fn gather_eight<const HAS_FRAMES: bool>(
-    pairs: &[Pair],
-    at: &[u32],
+    waiting: &Waiting,
     spheres: *const Sphere<F64>,
     orientations: *const Orientation,
     lanes: &MotionLanes<f64>,
 ) {
-    debug_assert!(at.len() <= BLOCK && BLOCK.is_multiple_of(8));
     // SAFETY: by the caller's promise; velocity, mass, spin and material are eight numbers' room in a row.
     unsafe {
-        for k in (0..at.len()).step_by(8) {
-            let mut grains = [[0; 8]; 2];
-            for n in 0..8 {
-                let [first, second] = pairs.get_unchecked(at[(k + n).min(at.len() - 1)] as usize).grains();
-                (grains[0][n], grains[1][n]) = (first as usize, second as usize);
-            }
+        for (group, eight) in waiting.pairs_in_groups::<8>().iter().enumerate() {
+            let k = 8 * group;
             let mut velocity = [_mm512_setzero_pd(); 3];
             for body in 0..2 {
                 let mut rows = [std::ptr::null::<f64>(); 8];
                 for n in 0..8 {
-                    rows[n] = (&raw const (*spheres.add(grains[body][n])).velocity).cast();
+                    let grain = eight[n].grains()[body] as usize;
+                    rows[n] = (&raw const (*spheres.add(grain)).velocity).cast();
                 }
                 let [x, y, z, mass] = columns(rows, 0);
                 let spin = columns(rows, 4);
@@ -133,7 +129,7 @@ pub(crate) unsafe fn gather_eight<const HAS_FRAMES: bool>(
                 }
                 if HAS_FRAMES {
                     for n in 0..8 {
-                        rows[n] = orientations.add(grains[body][n]).cast();
+                        rows[n] = orientations.add(eight[n].grains()[body] as usize).cast();
                     }
                     for (component, column) in columns(rows, 0).into_iter().enumerate() {
                         _mm512_storeu_pd(lanes.frame[body].add(component * BLOCK + k), column);
@@ -151,27 +147,25 @@ unsafe fn columns([a, b, c, d, e, f, g, h]: [*const f64; 8], from: usize) -> [__
     // SAFETY: by the caller's promise.
     unsafe {
         transposed([
-            two_rows(a.add(from), e.add(from)),
-            two_rows(b.add(from), f.add(from)),
-            two_rows(c.add(from), g.add(from)),
-            two_rows(d.add(from), h.add(from)),
+            two_rows(a.add(from), c.add(from)),
+            two_rows(b.add(from), d.add(from)),
+            two_rows(e.add(from), g.add(from)),
+            two_rows(f.add(from), h.add(from)),
         ])
     }
 }
 
-/// Columns of eight rows of four numbers, of which the fifth to eighth stand beside the first to fourth.
+/// Columns of eight rows a to h of four numbers, two in each register.
 #[target_feature(enable = "avx2,avx512f")]
 #[inline]
-fn transposed([ae, bf, cg, dh]: [__m512d; 4]) -> [__m512d; 4] {
-    let (ab_even, ab_odd) = (_mm512_unpacklo_pd(ae, bf), _mm512_unpackhi_pd(ae, bf));
-    let (cd_even, cd_odd) = (_mm512_unpacklo_pd(cg, dh), _mm512_unpackhi_pd(cg, dh));
-    let low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
-    let high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+fn transposed([ac, bd, eg, fh]: [__m512d; 4]) -> [__m512d; 4] {
+    let (first_xz, first_yw) = (_mm512_unpacklo_pd(ac, bd), _mm512_unpackhi_pd(ac, bd));
+    let (last_xz, last_yw) = (_mm512_unpacklo_pd(eg, fh), _mm512_unpackhi_pd(eg, fh));
     [
-        _mm512_permutex2var_pd(ab_even, low, cd_even),
-        _mm512_permutex2var_pd(ab_odd, low, cd_odd),
-        _mm512_permutex2var_pd(ab_even, high, cd_even),
-        _mm512_permutex2var_pd(ab_odd, high, cd_odd),
+        _mm512_shuffle_f64x2::<0b10_00_10_00>(first_xz, last_xz),
+        _mm512_shuffle_f64x2::<0b10_00_10_00>(first_yw, last_yw),
+        _mm512_shuffle_f64x2::<0b11_01_11_01>(first_xz, last_xz),
+        _mm512_shuffle_f64x2::<0b11_01_11_01>(first_yw, last_yw),
     ]
 }
 

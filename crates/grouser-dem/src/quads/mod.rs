@@ -125,7 +125,11 @@ pub(crate) unsafe fn look<Q: Quads>(
             for (lane, value) in put {
                 value.narrowed().packed(mask).store(lane.add(n));
             }
-            waiting.append_four(mask, from + next as u32);
+            // A pair is as long as a number in double precision.
+            let mut touching_first = [*four; 4];
+            let in_front = __m256d::load(four.cast()).packed(mask);
+            in_front.store(touching_first.as_mut_ptr().cast());
+            waiting.append_four(mask, from + next as u32, touching_first);
             fetch_memory(places, from as usize + next, 4);
             *touching |= (mask as u64) << next;
             next += 4;
@@ -162,26 +166,22 @@ unsafe fn row<Q: Quads>(
     }
 }
 
-/// Fills lanes 0.. with the motion, and with the orientations if `HAS_FRAMES`, of the pairs at `at`.
+/// Fills lanes 0.. with the motion, and with the orientations if `HAS_FRAMES`, of the pairs that wait.
 ///
 /// # Safety
-/// As [`look`]; there are at most [`BLOCK`] pairs; with `HAS_FRAMES` there is an orientation for each sphere.
+/// As [`look`]; with `HAS_FRAMES` there is an orientation for each sphere.
 #[target_feature(enable = "avx2")]
 pub(crate) unsafe fn gather<Q: Quads, const HAS_FRAMES: bool>(
-    pairs: &[Pair],
-    at: &[u32],
+    waiting: &Waiting,
     spheres: *const Sphere<Q>,
     orientations: *const Orientation,
     lanes: &MotionLanes<Q::Real>,
 ) {
-    debug_assert!(at.len() <= BLOCK);
     // SAFETY: by the caller's promise; velocity, mass, spin and material are eight numbers' room in a row.
     unsafe {
-        let mut k = 0;
-        while k < at.len() {
-            let last = at.len() - 1;
-            let grains = |n: usize| pairs.get_unchecked(at[last.min(k + n)] as usize).grains();
-            let [a, b, c, d] = [grains(0), grains(1), grains(2), grains(3)];
+        for (group, &[a, b, c, d]) in waiting.pairs_in_groups().iter().enumerate() {
+            let k = 4 * group;
+            let [a, b, c, d] = [a.grains(), b.grains(), c.grains(), d.grains()];
             let [first_a, second_a] = motions(a, spheres);
             let [first_b, second_b] = motions(b, spheres);
             let [first_c, second_c] = motions(c, spheres);
@@ -207,7 +207,6 @@ pub(crate) unsafe fn gather<Q: Quads, const HAS_FRAMES: bool>(
                     }
                 }
             }
-            k += 4;
         }
     }
 }
@@ -225,26 +224,25 @@ unsafe fn motions<Q: Quads>([first, second]: [u32; 2], spheres: *const Sphere<Q>
     }
 }
 
-/// Adds the lanes of forces, to the second grain with the opposite sign, and of the torques on each to the loads of the
-/// grains of the pairs at `at`.
+/// Adds the lanes of forces, to the second grain with the opposite sign, and of the torques on each to the loads of the grains of
+/// `pairs`.
 ///
 /// # Safety
 /// As [`scatter`].
 #[target_feature(enable = "avx2")]
 pub(crate) unsafe fn scatter_torques<Q: Quads>(
     pairs: &[Pair],
-    at: &[u32],
     loads: *mut Load<Q::Real>,
     forces: [*mut Q::Real; 3],
     torques: [[*mut Q::Real; 3]; 2],
 ) {
     // SAFETY: by the caller's promise; loads are two groups of four numbers.
     unsafe {
-        for k in (0..at.len()).step_by(4) {
+        for k in (0..pairs.len()).step_by(4) {
             let force = rows::<Q>(forces, k);
             let torque = [rows::<Q>(torques[0], k), rows::<Q>(torques[1], k)];
-            for n in 0..(at.len() - k).min(4) {
-                let [near, far] = pairs.get_unchecked(at[k + n] as usize).grains();
+            for n in 0..(pairs.len() - k).min(4) {
+                let [near, far] = pairs.get_unchecked(k + n).grains();
                 let near = loads.add(near as usize).cast();
                 Q::Both::load(near).plus(Q::Both::joined(force[n], torque[0][n])).store(near);
                 let far = loads.add(far as usize).cast();
@@ -269,14 +267,13 @@ unsafe fn rows<Q: Quads>([x, y, z]: [*mut Q::Real; 3], k: usize) -> [Q::Narrow; 
     }
 }
 
-/// Adds the lanes of forces and of n × F to the loads of the grains of the pairs at `at`.
+/// Adds the lanes of forces and of n × F to the loads of the grains of `pairs`.
 ///
 /// # Safety
-/// As [`gather`]; no other thread works on these grains.
+/// As [`gather`]; there are at most [`BLOCK`] pairs; no other thread works on these grains.
 #[target_feature(enable = "avx2")]
 pub(crate) unsafe fn scatter<Q: Quads>(
     pairs: &[Pair],
-    at: &[u32],
     loads: *mut Load<Q::Real>,
     forces: [*mut Q::Real; 3],
     couples: [*mut Q::Real; 3],
@@ -288,7 +285,7 @@ pub(crate) unsafe fn scatter<Q: Quads>(
         let padding = Q::Narrow::splat(Q::Real::default());
         let (near_side, far_side) = (Q::Both::of_halves(one, one), Q::Both::of_halves(-one, one));
         let mut k = 0;
-        while k < at.len() {
+        while k < pairs.len() {
             let [x, y, z] = forces;
             let force = Q::Narrow::transposed([
                 Q::Narrow::load(x.add(k)),
@@ -303,8 +300,8 @@ pub(crate) unsafe fn scatter<Q: Quads>(
                 Q::Narrow::load(z.add(k)).negated(),
                 padding,
             ]);
-            for n in 0..(at.len() - k).min(4) {
-                let [near, far] = pairs.get_unchecked(at[k + n] as usize).grains();
+            for n in 0..(pairs.len() - k).min(4) {
+                let [near, far] = pairs.get_unchecked(k + n).grains();
                 let both = Q::Both::joined(force[n], couple[n]);
                 for (grain, side, arm) in [(near, near_side, arms[0]), (far, far_side, arms[1])] {
                     let load = loads.add(grain as usize).cast();
