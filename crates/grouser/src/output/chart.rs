@@ -1,7 +1,9 @@
 //! Charts: curves and points over two axes, drawn once for SVG and for PNG.
 
 mod canvas;
+mod legend;
 
+use legend::{INDENT, MARGIN, ROW};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -83,7 +85,8 @@ impl Chart {
     fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>, scale: f64) -> Result<(), Failure> {
         let px = |length: f64| (length * scale).round() as u32;
         let text = |size: f64| ("sans-serif", size * scale).into_font();
-        let (x, y) = (self.range(|p| p.0), self.range(|p| p.1));
+        let x = self.range(|p| p.0);
+        let (corner, y) = self.legend_place(x, self.range(|p| p.1));
         let mut chart = ChartBuilder::on(area)
             .caption(&self.title, text(19.0).color(&INK))
             .margin(px(12.0))
@@ -124,20 +127,28 @@ impl Chart {
             .map_err(|error| error.to_string())?;
         }
         let (across, down) = chart.plotting_area().get_pixel_range();
-        self.legend(area, (across.start, down.start), scale)
+        let (width, height) = self.legend_size();
+        let from_edge = |length: f64| (length * scale).round() as i32;
+        let left = if corner.is_right {
+            across.end - from_edge(width + MARGIN)
+        } else {
+            across.start + from_edge(MARGIN)
+        };
+        let top = if corner.is_low { down.end - from_edge(height) } else { down.start + from_edge(MARGIN) };
+        self.legend(area, (left, top), scale)
     }
 
-    /// One line a series, from the upper left corner of the plot.
+    /// One line a series, from a place to the right and downwards.
     fn legend<B: DrawingBackend>(
         &self,
         area: &DrawingArea<B, Shift>,
-        corner: (i32, i32),
+        (left, top): (i32, i32),
         scale: f64,
     ) -> Result<(), Failure> {
         let px = |length: f64| (length * scale).round() as i32;
         for (row, series) in self.series.iter().filter(|series| !series.name.is_empty()).enumerate() {
             let style = self.style(series, px(2.0) as u32);
-            let (x, y) = (corner.0 + px(14.0), corner.1 + px(18.0) + row as i32 * px(19.0));
+            let (x, y) = (left, top + px(4.0) + row as i32 * px(ROW));
             let line = |from: f64, to: f64| PathElement::new([(x + px(from), y), (x + px(to), y)], style);
             match series.mark {
                 Mark::Line => area.draw(&line(0.0, 24.0)),
@@ -146,7 +157,7 @@ impl Chart {
             }
             .and_then(|()| {
                 let font = ("sans-serif", 14.0 * scale).into_font().color(&INK);
-                area.draw(&Text::new(series.name.as_str(), (x + px(33.0), y - px(7.0)), font))
+                area.draw(&Text::new(series.name.as_str(), (x + px(INDENT), y - px(7.0)), font))
             })
             .map_err(|error| error.to_string())?;
         }

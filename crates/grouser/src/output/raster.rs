@@ -116,6 +116,10 @@ impl Raster {
     pub fn colour_bar(&mut self) {
         let (width, n) = (self.n[0] / 40, self.n);
         let (low, high) = (n[1] / 10, n[1] - n[1] / 10);
+        // On a margin of its own: what is drawn does not go on behind it.
+        for row in self.pixels.chunks_exact_mut(n[0]) {
+            row[n[0] - 3 * width..].fill([1.0; 3]);
+        }
         for row in low..high {
             let value = 1.0 - 2.0 * (row - low) as f64 / (high - low) as f64;
             for column in n[0] - 2 * width..n[0] - width {

@@ -26,6 +26,8 @@ pub struct Summary {
     pub threads: usize,
     /// `done`, `failed` or `interrupted`.
     pub status: Status,
+    /// Run with `--quick`: a scene smaller and coarser than the file's.
+    pub is_quick: bool,
     /// What went wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
@@ -41,6 +43,8 @@ pub struct Summary {
     pub conventions: BTreeMap<&'static str, String>,
     /// Results.
     pub metrics: Vec<Metric>,
+    /// What pictures show: name of the file without `.png` → caption.
+    pub pictures: BTreeMap<String, String>,
     /// Files in the folder.
     pub files: Vec<String>,
 }

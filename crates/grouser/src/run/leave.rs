@@ -66,6 +66,7 @@ pub(super) fn leave(
             Ok(Ended::Interrupted) => Status::Interrupted,
             Err(_) => Status::Failed,
         },
+        is_quick: driver.scenario.is_quick,
         error: ended.as_ref().err().map(ToString::to_string),
         time: Time {
             simulated_s: time_s,
@@ -78,6 +79,7 @@ pub(super) fn leave(
         energy: outcome.energy.clone(),
         conventions: outcome.conventions.clone(),
         metrics: outcome.metrics.clone(),
+        pictures: outcome.pictures.iter().map(|it| (it.name.clone(), it.caption.clone())).collect(),
         files,
     };
     summary.write(folder)?;

@@ -18,10 +18,11 @@ pub fn page(scenario: &Scenario, summary: &Summary, outcome: &Outcome) -> String
     };
     let _ = write!(
         body,
-        "<header><p class=kicker>grouser {} · {status}</p><h1>{}</h1><p class=lead>{}</p></header>",
+        "<header><p class=kicker>grouser {} · {status}{}</p><h1>{}</h1>{}</header>",
         summary.version,
+        if summary.is_quick { " · with --quick: smaller and coarser than the scene" } else { "" },
         escaped(&scenario.title),
-        escaped(&scenario.description)
+        paragraphs(&scenario.description)
     );
     if let Some(error) = &summary.error {
         let _ =
@@ -102,7 +103,12 @@ pub fn page(scenario: &Scenario, summary: &Summary, outcome: &Outcome) -> String
     )
 }
 
+/// A section with a table; nothing without rows.
 fn table(title: &str, heads: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
+    let mut rows = rows.peekable();
+    if rows.peek().is_none() {
+        return String::new();
+    }
     let mut text = format!("<section><h2>{}</h2><div class=scroll><table>", escaped(title));
     if heads.iter().any(|head| !head.is_empty()) {
         let cells: String = heads.iter().map(|head| format!("<th>{}</th>", escaped(head))).collect();
@@ -128,6 +134,21 @@ pub fn number(value: f64) -> String {
     }
 }
 
+/// A line that ends a sentence ends a paragraph, too; other ends of lines are where the author's editor broke them.
+fn paragraphs(text: &str) -> String {
+    let mut paragraphs = vec![String::new()];
+    for line in text.lines().map(str::trim) {
+        let last = paragraphs.last_mut().expect("there is one");
+        *last += if last.is_empty() { "" } else { " " };
+        *last += line;
+        if line.is_empty() || line.ends_with(['.', '!', '?', ':']) {
+            paragraphs.push(String::new());
+        }
+    }
+    let paragraphs = paragraphs.iter().filter(|text| !text.trim().is_empty());
+    paragraphs.map(|text| format!("<p class=lead>{}</p>", escaped(text.trim()))).collect()
+}
+
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
@@ -139,6 +160,10 @@ mod tests {
     #[test]
     fn numbers_have_four_digits_and_text_is_harmless() {
         assert_eq!([12345.6, 0.012344, 1.5e-7, 0.0].map(number), ["12346", "0.01234", "1.500e-7", "0"]);
+        let description = "Ruts of a machine at settings\nof others. And more.\nAssumed: <all>\n\nThe end";
+        let first = "<p class=lead>Ruts of a machine at settings of others. And more.</p>";
+        let rest = "<p class=lead>Assumed: &lt;all&gt;</p><p class=lead>The end</p>";
+        assert_eq!(paragraphs(description), format!("{first}{rest}"));
         assert_eq!(escaped("<b a=\"&\">"), "&lt;b a=&quot;&amp;&quot;&gt;");
     }
 }

@@ -1,9 +1,9 @@
 //! A study: every variant is a run of its own in a folder of its own; then all of them are compared.
 
-use super::clock::Clock;
+use super::clock::{Clock, Taken};
 use super::driver::Driver;
 use super::leave::{Left, leave};
-use super::study_outcome::{VariantResult, outcome};
+use super::study_outcome::{VariantResult, missing_pictures, outcome};
 use super::{Ended, Options, Progress, RunError, SetupError, Stage, compose};
 use crate::output::write_atomic;
 use crate::scene::{Scenario, Study, Variant, resolved, variant};
@@ -38,7 +38,12 @@ pub(super) fn run(driver: Driver, study: &Study) -> Result<Ended, RunError> {
     let steps = |key: &str| results.iter().map(|r: &VariantResult| r.time(key)).sum::<f64>();
     let (n_steps, time_s) = (steps("steps") as u64, steps("simulated_s"));
     let left = Left { outcome: outcome(study, &results), series: &[], n_steps, time_s };
-    leave(&Driver { scenario, options, progress }, left, &clock.stop(), &ended)?;
+    for text in missing_pictures(study, &results) {
+        progress.note(&text);
+    }
+    let taken = clock.stop();
+    let taken = Taken { setup_s: steps("setup_s").min(taken.wall_s), ..taken };
+    leave(&Driver { scenario, options, progress }, left, &taken, &ended)?;
     ended
 }
 

@@ -1,6 +1,6 @@
 //! What has come of a study: all variants in a table, curves over each other, metrics over an axis.
 
-use super::experiment::{Outcome, Section};
+use super::experiment::{Outcome, Picture, Section};
 use super::report::number;
 use crate::output::Table;
 use crate::output::chart::{Chart, Mark, Series};
@@ -52,6 +52,22 @@ impl VariantResult {
         Table::from_csv(&fs::read_to_string(self.folder.join(format!("{name}.csv"))).ok()?)
     }
 
+    /// A picture that it left.
+    fn picture(&self, study: &Study, name: &str) -> Option<Picture> {
+        let png = fs::read(self.folder.join(format!("{name}.png"))).ok()?;
+        let axes: Vec<String> = study.axes.iter().map(|axis| axis.name.clone()).collect();
+        let folder = self.folder.file_name()?.to_string_lossy();
+        Some(Picture {
+            name: format!("{folder}_{name}"),
+            caption: format!(
+                "{}: {}",
+                self.key(study, &axes),
+                self.summary["pictures"][name].as_str().unwrap_or(name)
+            ),
+            png,
+        })
+    }
+
     /// Its labels on the axes called `by`.
     fn key(&self, study: &Study, by: &[String]) -> String {
         let label = |name: &String| Some(format!("{name} {}", self.labels[study.axis(name)?]));
@@ -78,12 +94,29 @@ pub fn outcome(study: &Study, results: &[VariantResult]) -> Outcome {
     let largest = residuals.clone().map(|(_, residual)| residual).max_by(|a, b| a.abs().total_cmp(&b.abs()));
     let largest =
         largest.map(|it| Metric::new(format!("largest {ENERGY_RESIDUAL} of all variants"), it, "-"));
+    let pictures = study.pictures.iter().flat_map(|name| results.iter().map(move |result| (result, name)));
     Outcome {
         charts: charts.collect(),
+        pictures: pictures.filter_map(|(result, name)| result.picture(study, name)).collect(),
         sections: vec![table_of_variants(study, results)],
         metrics: metrics.chain(residuals.map(residual_of)).chain(largest).collect(),
         ..Outcome::default()
     }
+}
+
+/// What is wrong with the pictures asked for: each that no variant has left, beside those that it has.
+pub fn missing_pictures(study: &Study, results: &[VariantResult]) -> Vec<String> {
+    let Some(first) = results.first() else { return Vec::new() };
+    let entries = fs::read_dir(&first.folder).into_iter().flatten().flatten();
+    let files = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut names: Vec<String> =
+        files.filter_map(|file| file.strip_suffix(".png").map(str::to_owned)).collect();
+    names.sort();
+    let is_missing = |name: &&String| results.iter().all(|result| result.picture(study, name).is_none());
+    let missing = study.pictures.iter().filter(is_missing);
+    missing
+        .map(|name| format!("study.pictures: no variant has left {name}.png; there are {}", names.join(", ")))
+        .collect()
 }
 
 fn is_column(study: &Study, name: &str) -> bool {
@@ -148,7 +181,8 @@ fn curves_chart(study: &Study, curves: &Curves, results: &[VariantResult]) -> Ch
             .map(|table| table.column(&curves.x).into_iter().zip(table.column(&curves.y)).collect())
             .collect();
         if let Some(table) = tables.first() {
-            (chart.x_label, chart.y_label) = (table.label(&curves.x), table.label(&curves.y));
+            let spoken = |column: &str| table.label(column).replace('_', " ");
+            (chart.x_label, chart.y_label) = (spoken(&curves.x), spoken(&curves.y));
         }
         if let [only] = lines.as_slice() {
             chart.series.push(Series { name, colour, mark: Mark::Line, points: only.clone() });
@@ -276,6 +310,31 @@ mod tests {
         // Where nothing moves there is no such column.
         let still = outcome_of([None; 3]);
         assert!(still.metrics.is_empty() && still.sections[0].heads == ["seed", "time [s]"]);
+    }
+
+    #[test]
+    fn pictures_of_variants_are_shown_with_their_labels_and_missing_ones_are_told() {
+        let axis = r#"(axes: [(name: "seed", values: [(label: "1", set: {}), (label: "2", set: {})])], pictures: ["ruts", "tracks"])"#;
+        let study: Study = crate::scene::dialect().from_str(axis).unwrap();
+        let home = tempfile::tempdir().unwrap();
+        let result = |variant: &Variant| {
+            let folder = home.path().join(variant.folder());
+            fs::create_dir(&folder).unwrap();
+            fs::write(folder.join("ruts.png"), &variant.labels[0]).unwrap();
+            let summary = serde_json::json!({"pictures": {"ruts": "Sinkage: white 0"}});
+            VariantResult { labels: variant.labels.clone(), folder, summary }
+        };
+        let results: Vec<VariantResult> = study.variants().iter().map(result).collect();
+        let pictures = outcome(&study, &results).pictures;
+        let seen: Vec<_> =
+            pictures.iter().map(|p| (p.name.as_str(), p.caption.as_str(), p.png.as_slice())).collect();
+        let expected =
+            [("1_ruts", "seed 1: Sinkage: white 0", &b"1"[..]), ("2_ruts", "seed 2: Sinkage: white 0", b"2")];
+        assert_eq!(seen, expected);
+        assert_eq!(
+            missing_pictures(&study, &results),
+            ["study.pictures: no variant has left tracks.png; there are ruts"]
+        );
     }
 
     #[test]

@@ -96,6 +96,9 @@ pub struct Scenario {
     /// What `--quick` replaces: path of a value → the value written there.
     #[serde(default)]
     pub quick: BTreeMap<String, Box<RawValue>>,
+    /// They have been replaced.
+    #[serde(skip)]
+    pub is_quick: bool,
 }
 
 fn standard_gravity() -> [f64; 3] {

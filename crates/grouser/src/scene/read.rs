@@ -51,6 +51,7 @@ pub fn read_with_advice(
         scenario = parse(&source).map_err(|error| vec![error]);
     }
     let mut scenario = scenario?;
+    scenario.is_quick = is_quick && !scenario.quick.is_empty();
     complete_pairs(&mut scenario);
     scenario.find_beside(name);
     if let Some(Tool::Mesh(mesh)) = &scenario.tool
@@ -89,7 +90,9 @@ pub fn resolved(scenario: &Scenario) -> String {
 pub fn variant(scenario: &Scenario, variant: &Variant) -> Result<Scenario, Vec<Diagnostic>> {
     let title = format!("{}: {}", scenario.title, variant.labels.join(", "));
     let base = Scenario { study: None, quick: BTreeMap::new(), title, ..scenario.clone() };
-    read(&format!("study, {}", variant.labels.join(", ")), &resolved(&base), false, &variant.sets)
+    let read =
+        read(&format!("study, {}", variant.labels.join(", ")), &resolved(&base), false, &variant.sets)?;
+    Ok(Scenario { is_quick: scenario.is_quick, ..read })
 }
 
 fn parse(source: &Source) -> Result<Scenario, Diagnostic> {

@@ -16,6 +16,9 @@ pub struct Study {
     /// Metrics over an axis.
     #[serde(default)]
     pub trends: Vec<Trend>,
+    /// Pictures of every variant that are shown one below the other: names of files without `.png`.
+    #[serde(default)]
+    pub pictures: Vec<String>,
     /// Metrics of the table of all variants, by the beginning of their name; all when empty.
     #[serde(default)]
     pub columns: Vec<String>,

@@ -45,6 +45,7 @@ fn variants_lie_in_their_folders_are_compared_and_not_run_twice() {
     }
     assert_ne!(solid("0.1, 1"), solid("0.1, 2"));
     assert!(fs::metadata(path("out/trend_1.svg")).is_ok());
+    assert_eq!(summary["is_quick"], false);
 
     // Taken up again with one variant missing, only that one is run.
     let kept = fs::metadata(path("out/0.1-1/summary.json")).unwrap().modified().unwrap();
@@ -61,4 +62,9 @@ fn variants_lie_in_their_folders_are_compared_and_not_run_twice() {
     assert_eq!(output.status.code(), Some(2), "{message}");
     assert!(message.contains("materials.sand.friction") && message.contains("0.9"), "{message}");
     assert!(fs::metadata(path("bad")).is_err());
+    // So is a picture that lies elsewhere.
+    fs::write(path("bad.ron"), SCENE.replace("columns:", "pictures: [\"../ruts\"], columns:")).unwrap();
+    let output = grouser(home.path(), &["run", &path("bad.ron"), "--out", &path("bad")]);
+    let message = errors(&output);
+    assert!(output.status.code() == Some(2) && message.contains("study.pictures[0]"), "{message}");
 }

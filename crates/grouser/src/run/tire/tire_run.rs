@@ -50,9 +50,10 @@ const NEAR_FLOOR: f64 = 0.2;
 #[serde(bound = "L: Law")]
 pub struct TireRun<L: Law> {
     roll: Roll,
-    /// Outer radius of the size code, which slip is measured with, and of the inflated tire without load [m].
+    /// Outer radius of the size code, which slip is measured with [m].
     radius: f64,
-    free_radius: f64,
+    /// Outer surface of the inflated tire without load, in the frame of the rim [m].
+    free: Vec<Vec3>,
     bed: LawBed<L>,
     body: Body<L>,
     axle: Axle,
@@ -137,13 +138,16 @@ impl<L: Law> Pass<L> for TireRun<L> {
         let axle = Axle::new(roll, radius, position, mass * g, g);
         let body = Body::new(tire, tread, &axle, materials.number(&tire.material), time_step)?;
         bed.keep_ledger(true);
+        let pose = axle.now().pose();
+        let to_rim = |v: &Vec3| pose.inverse_transform_point(&(*v).into()).coords;
+        let free = body.surface(&axle).vertices.iter().map(to_rim).collect();
         let deepest_axle = largest_radius + NEAR_FLOOR * level;
         let sinking = (position.z - deepest_axle) / roll.sinking_speed_m_s;
         Ok(Self {
             before: bed.energy(),
             roll: roll.clone(),
             radius,
-            free_radius: largest_radius,
+            free,
             body,
             level,
             deepest_axle,
@@ -281,6 +285,9 @@ impl<L: Law> TireRun<L> {
         let place = *self.axle.now();
         let surface = self.body.surface(&self.axle);
         let lowest = surface.vertices.iter().fold(f64::INFINITY, |low, v| low.min(v.z));
+        let pose = place.pose();
+        let free =
+            self.free.iter().map(|v| (pose.rotation * v).z + place.position.z).fold(f64::INFINITY, f64::min);
         let [work, power] = self.body.contact_work();
         let by_torque = mean.torque / self.radius;
         let ledger = self.ledger();
@@ -288,7 +295,7 @@ impl<L: Law> TireRun<L> {
             self.axle.time(),
             place.position.x - self.roll.start_m,
             self.level - lowest,
-            self.free_radius - (place.position.z - lowest),
+            lowest - free,
             mean.force.x,
             mean.force.y,
             mean.force.z,

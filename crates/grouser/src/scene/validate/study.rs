@@ -19,6 +19,13 @@ pub fn validate(check: &mut Check, study: &Study) {
             }
         }
     }
+    for (i, name) in study.pictures.iter().enumerate() {
+        if name.is_empty() || name.contains(['/', '\\', '.']) {
+            let what = format!("\"{name}\" is no name of a picture");
+            let expected = "the name of a file that every variant leaves, without folder and without .png";
+            check.fail(&format!("study.pictures[{i}]"), &what, expected, "a path");
+        }
+    }
     let names: Vec<&str> = study.axes.iter().map(|axis| axis.name.as_str()).collect();
     let by_curves =
         study.curves.iter().enumerate().map(|(i, c)| (format!("study.curves[{i}].by"), c.by.clone()));
