@@ -68,9 +68,15 @@ impl VariantResult {
         })
     }
 
-    /// Its labels on the axes called `by`.
+    /// Its labels on the axes called `by`, with the unit in the axis' name behind the number: `c [m]` gives `c 0.5 m`.
     fn key(&self, study: &Study, by: &[String]) -> String {
-        let label = |name: &String| Some(format!("{name} {}", self.labels[study.axis(name)?]));
+        let label = |name: &String| {
+            let label = &self.labels[study.axis(name)?];
+            Some(match name.strip_suffix(']').and_then(|name| name.split_once(" [")) {
+                Some((name, unit)) => format!("{name} {label} {unit}"),
+                None => format!("{name} {label}"),
+            })
+        };
         by.iter().filter_map(label).collect::<Vec<_>>().join(", ")
     }
 }
@@ -314,7 +320,7 @@ mod tests {
 
     #[test]
     fn pictures_of_variants_are_shown_with_their_labels_and_missing_ones_are_told() {
-        let axis = r#"(axes: [(name: "seed", values: [(label: "1", set: {}), (label: "2", set: {})])], pictures: ["ruts", "tracks"])"#;
+        let axis = r#"(axes: [(name: "c [m]", values: [(label: "1", set: {}), (label: "2", set: {})])], pictures: ["ruts", "tracks"])"#;
         let study: Study = crate::scene::dialect().from_str(axis).unwrap();
         let home = tempfile::tempdir().unwrap();
         let result = |variant: &Variant| {
@@ -329,7 +335,7 @@ mod tests {
         let seen: Vec<_> =
             pictures.iter().map(|p| (p.name.as_str(), p.caption.as_str(), p.png.as_slice())).collect();
         let expected =
-            [("1_ruts", "seed 1: Sinkage: white 0", &b"1"[..]), ("2_ruts", "seed 2: Sinkage: white 0", b"2")];
+            [("1_ruts", "c 1 m: Sinkage: white 0", &b"1"[..]), ("2_ruts", "c 2 m: Sinkage: white 0", b"2")];
         assert_eq!(seen, expected);
         assert_eq!(
             missing_pictures(&study, &results),
