@@ -87,7 +87,7 @@ impl Found<'_> {
             heading: "From plates to a wheel".into(),
             text: format!(
                 "At zero slip the wheel is predicted to sink {:.1} mm and sank {:.1} mm. Drawbar pull over load is within 0.03 of the \
-                 measurement at {within} of {} slips from 0 on; the largest difference is {:+.3} at slip {:.2}.",
+                 measurement at {within} of {} slips from 0 on; the largest difference is {:+.3} at slip {:.3}.",
                 1e3 * found[0].sinkage,
                 1e3 * sinkage,
                 errors.len(),
