@@ -39,7 +39,8 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
                 };
                 let gather = if has_quaternions::<T, L>() { quads::gather::<Q, true> } else { quads::gather::<Q, false> };
                 let (spheres, orientations) = (input.grains.spheres().cast(), input.grains.all_orientations());
-                // SAFETY: as in `look`; a block has room for all that wait; a block of quaternions is four arrays of lanes; with eights this pass is compiled for AVX-512F and `Q` is `F64`.
+                // SAFETY: as in `look`; a block has room for all that wait; a block of quaternions is four arrays of lanes; with
+                // eights this pass is compiled for AVX-512F and `Q` is `F64`.
                 unsafe {
                     if has_eights::<Q>(input.set) {
                         let gather = if has_quaternions::<T, L>() { quads::gather_eight::<true> } else { quads::gather_eight::<false> };
@@ -76,7 +77,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
 
     /// Fills the lanes of orientations.
     #[inline(always)]
-    pub(super) fn gather_frames<P: Precision<Real = T>>(&mut self, pairs: &[Pair], input: &PassInput<P, L>) {
+    fn gather_frames<P: Precision<Real = T>>(&mut self, pairs: &[Pair], input: &PassInput<P, L>) {
         for (group, four) in pairs.chunks(4).enumerate() {
             for body in 0..2 {
                 let frame = |n: usize| {
@@ -90,12 +91,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
     }
 
     #[inline(always)]
-    pub(super) fn gather_one<P: Precision<Real = T>>(
-        &mut self,
-        pair: Pair,
-        input: &PassInput<P, L>,
-        k: usize,
-    ) {
+    fn gather_one<P: Precision<Real = T>>(&mut self, pair: Pair, input: &PassInput<P, L>, k: usize) {
         let [first, second] = pair.grains().map(|grain| input.grains.sphere(grain));
         let velocity = (first.velocity - second.velocity).to_array();
         for axis in 0..3 {

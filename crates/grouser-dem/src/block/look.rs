@@ -82,12 +82,7 @@ impl<T: Real, L: ContactLaw<T>> Block<T, L> {
 
     /// Fills the position lanes `k` with a pair and says whether it touches.
     #[inline(always)]
-    pub(super) fn look_at_one<P: Precision<Real = T>>(
-        &mut self,
-        pair: Pair,
-        input: &PassInput<P, L>,
-        k: usize,
-    ) -> bool {
+    fn look_at_one<P: Precision<Real = T>>(&mut self, pair: Pair, input: &PassInput<P, L>, k: usize) -> bool {
         let [first, second] = pair.grains().map(|grain| input.grains.sphere(grain));
         let narrow = |c: P::Coordinate| T::from_f64(c.to_f64());
         let (difference, room) = relative_place(pair, input);

@@ -9,7 +9,7 @@ use grouser_contact::{BLOCK, F64, Sphere};
 use grouser_geometry::Orientation;
 use std::arch::x86_64::*;
 
-/// Rows that stand in front of a register, the second one after each of them behind it, for [`transposed`].
+/// Rows that stand in front in the registers of [`transposed`]; behind each of them stands the second one after it.
 const ROWS_BESIDE_OTHERS: [usize; 4] = [0, 1, 4, 5];
 
 /// As [`super::look`], eight pairs at a time, until fewer are left or fit.
@@ -158,7 +158,7 @@ unsafe fn columns([a, b, c, d, e, f, g, h]: [*const f64; 8], from: usize) -> [__
 /// Columns of eight rows a to h of four numbers, two in each register.
 #[target_feature(enable = "avx2,avx512f")]
 #[inline]
-fn transposed([ac, bd, eg, fh]: [__m512d; 4]) -> [__m512d; 4] {
+pub(super) fn transposed([ac, bd, eg, fh]: [__m512d; 4]) -> [__m512d; 4] {
     let (first_xz, first_yw) = (_mm512_unpacklo_pd(ac, bd), _mm512_unpackhi_pd(ac, bd));
     let (last_xz, last_yw) = (_mm512_unpacklo_pd(eg, fh), _mm512_unpackhi_pd(eg, fh));
     [

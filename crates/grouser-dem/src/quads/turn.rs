@@ -1,6 +1,7 @@
 //! Orientations of up to four grains, or of eight, at once, as [`crate::turning`] turns one.
 
 use super::Quads;
+use super::eight::transposed;
 use super::quad::Quad;
 use super::several::{Eight, Four};
 use crate::euler::Axes;
@@ -153,15 +154,9 @@ unsafe fn put(orientations: &mut [Orientation], [x, y, z, w]: [Four; 4]) {
 /// Eight rows of four numbers, two in each register, become columns, all in the order 0, 2, 1, 3, 4, 6, 5, 7 of the rows.
 #[target_feature(enable = "avx512f")]
 #[inline]
-unsafe fn columns_of_pairs([a, b, c, d]: [__m512d; 4]) -> [Eight; 4] {
-    let (first_xz, first_yw) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
-    let (last_xz, last_yw) = (_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
-    [
-        Eight(_mm512_shuffle_f64x2::<0b10_00_10_00>(first_xz, last_xz)),
-        Eight(_mm512_shuffle_f64x2::<0b10_00_10_00>(first_yw, last_yw)),
-        Eight(_mm512_shuffle_f64x2::<0b11_01_11_01>(first_xz, last_xz)),
-        Eight(_mm512_shuffle_f64x2::<0b11_01_11_01>(first_yw, last_yw)),
-    ]
+unsafe fn columns_of_pairs(rows: [__m512d; 4]) -> [Eight; 4] {
+    let [x, y, z, w] = transposed(rows);
+    [Eight(x), Eight(y), Eight(z), Eight(w)]
 }
 
 /// The way back.
