@@ -50,7 +50,7 @@ const PALETTE: [RGBColor; 6] = [
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
     RGBColor(204, 121, 167),
-    RGBColor(125, 95, 205),
+    RGBColor(230, 159, 0),
     RGBColor(86, 160, 220),
 ];
 const INK: RGBColor = RGBColor(17, 17, 17);

@@ -118,7 +118,8 @@ pub fn missing_pictures(study: &Study, results: &[VariantResult]) -> Vec<String>
     let mut names: Vec<String> =
         files.filter_map(|file| file.strip_suffix(".png").map(str::to_owned)).collect();
     names.sort();
-    let is_missing = |name: &&String| results.iter().all(|result| result.picture(study, name).is_none());
+    let is_missing =
+        |name: &&String| results.iter().all(|result| !result.folder.join(format!("{name}.png")).is_file());
     let missing = study.pictures.iter().filter(is_missing);
     missing
         .map(|name| format!("study.pictures: no variant has left {name}.png; there are {}", names.join(", ")))

@@ -210,6 +210,7 @@ mod tests {
     fn the_resolved_scenario_reads_back_to_the_same_bytes() {
         for is_quick in [false, true] {
             let scenario = read("b.ron", BEVAMETER, is_quick, &[]).unwrap();
+            assert_eq!(scenario.is_quick, is_quick);
             let first = resolved(&scenario);
             let again = resolved(&read("r.ron", &first, false, &[]).unwrap());
             assert_eq!(first, again);

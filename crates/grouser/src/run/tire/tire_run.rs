@@ -1,6 +1,6 @@
 //! A tire on its way over its bed, and what is measured.
 
-use super::axle::{Axle, Phase};
+use super::axle::{Axle, Phase, Place};
 use super::body::{Body, StepInput};
 use super::ledger::TireLedger;
 use super::traction::Traction;
@@ -285,9 +285,6 @@ impl<L: Law> TireRun<L> {
         let place = *self.axle.now();
         let surface = self.body.surface(&self.axle);
         let lowest = surface.vertices.iter().fold(f64::INFINITY, |low, v| low.min(v.z));
-        let pose = place.pose();
-        let free =
-            self.free.iter().map(|v| (pose.rotation * v).z + place.position.z).fold(f64::INFINITY, f64::min);
         let [work, power] = self.body.contact_work();
         let by_torque = mean.torque / self.radius;
         let ledger = self.ledger();
@@ -295,7 +292,7 @@ impl<L: Law> TireRun<L> {
             self.axle.time(),
             place.position.x - self.roll.start_m,
             self.level - lowest,
-            lowest - free,
+            deflection(lowest, &self.free, &place),
             mean.force.x,
             mean.force.y,
             mean.force.z,
@@ -340,5 +337,35 @@ impl<L: Law> TireRun<L> {
         let solid = self.body.elastic().map(|tire| &tire.tread().solid);
         let [on_tire, _] = self.body.contact_work();
         TireLedger::between(&self.before, &self.bed.energy(), self.body.contact_ledger(), solid, on_tire)
+    }
+}
+
+/// How much higher the tire's lowest point, at the height `lowest` [m], is than that of the same tire without load [m], whose outer
+/// surface in the frame of the rim is `free` [m].
+fn deflection(lowest: f64, free: &[Vec3], place: &Place) -> f64 {
+    let pose = place.pose();
+    let height = |v: &Vec3| (pose.rotation * v).z + place.position.z;
+    lowest - free.iter().map(height).fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rigid_polygon_does_not_deflect_however_it_is_turned() {
+        let corner = |n: u32, angle: f64| {
+            let at = angle + f64::from(n) * std::f64::consts::TAU / 12.0;
+            Vec3::new(0.3 * at.sin(), 0.0, 0.3 * at.cos())
+        };
+        let free: Vec<Vec3> = (0..12).map(|n| corner(n, 0.0)).collect();
+        for angle in [0.0, 0.1, 0.26, 1.0, 7.0] {
+            let position = Vec3::new(1.0, 2.0, 0.5);
+            let place = Place { position, velocity: Vec3::zeros(), angle, spin: 0.0 };
+            let height = |n| position.z + corner(n, angle).z;
+            let lowest = (0..12).map(height).fold(f64::INFINITY, f64::min);
+            assert!(deflection(lowest, &free, &place).abs() < 1e-15, "{angle}");
+            assert!((deflection(lowest + 0.01, &free, &place) - 0.01).abs() < 1e-15);
+        }
     }
 }
