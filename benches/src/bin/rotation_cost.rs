@@ -28,13 +28,14 @@ struct Arguments {
     /// Steps before the clock starts: few, so that every law has the contacts of the settled spheres
     #[arg(long, default_value_t = 20)]
     warm: u64,
-    /// Repeats, alternately; the fastest of each law counts, in which lists are seldom made; the mean of all has them
+    /// Rounds, in each of which every law has its turn; the fastest of each law counts, in which lists are seldom made; the mean
+    /// of all has them
     #[arg(long, default_value_t = 40)]
     repeats: u32,
     /// Dashpot on the lift of tilting bodies over that of the normal force; 1 in the shipped scenes
     #[arg(long, default_value_t = 1.0)]
     lift_damping: f64,
-    /// Only the laws whose name contains this, the first of which stands for free rotation in the ratios
+    /// Only the laws whose name contains one of these, separated by `|`; the first law stands for free rotation in the ratios
     #[arg(long, default_value = "")]
     only: String,
     /// Scalars of positions and of contact arithmetic
@@ -97,34 +98,42 @@ fn compare<P: Precision>(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         }),
         ("tilting, three rectangles", rotating(&spheres, PlaneTilting::new(&of(half))?)?),
     ];
-    beds.retain(|(name, _)| name.contains(&arguments.only));
+    beds.retain(|(name, _)| arguments.only.split('|').any(|part| name.contains(part)));
     for (_, bed) in &mut beds {
         bed.run(arguments.warm)?;
     }
-    let mut fastest = vec![f64::INFINITY; beds.len()];
-    let mut total = vec![0.0; beds.len()];
+    let mut rounds = Vec::new();
     for _ in 0..arguments.repeats {
-        for ((fastest, total), (_, bed)) in fastest.iter_mut().zip(&mut total).zip(&mut beds) {
+        let mut times = Vec::new();
+        for (_, bed) in &mut beds {
             let begun = Instant::now();
             bed.run(arguments.steps)?;
-            let time = begun.elapsed().as_secs_f64();
-            *fastest = time.min(*fastest);
-            *total += time;
+            times.push(begun.elapsed().as_secs_f64());
         }
+        rounds.push(times);
     }
     println!("{n_grains} grains, {:?}, one thread", arguments.precision);
-    for ((time, all), (name, bed)) in fastest.iter().zip(&total).zip(&beds) {
-        let grain_steps = n_grains * arguments.steps as f64 * 1e-6;
-        let (rate, mean) = (grain_steps / time, grain_steps * f64::from(arguments.repeats) / all);
+    let grain_steps = n_grains * arguments.steps as f64 * 1e-6;
+    let fastest = |law: usize| rounds.iter().map(|times| times[law]).fold(f64::INFINITY, f64::min);
+    let total = |law: usize| rounds.iter().map(|times| times[law]).sum::<f64>();
+    for (law, (name, bed)) in beds.iter().enumerate() {
+        let (rate, mean) = (grain_steps / fastest(law), grain_steps * rounds.len() as f64 / total(law));
         let (contacts, listed) = (bed.contacts_per_grain(), bed.listed_per_grain());
         println!(
-            "  {name:<26} {rate:6.2} M grain-steps/s  {:5.2} × free  mean {mean:6.2} {:5.2} ×  {contacts:.2} contacts a grain, {listed:.2} listed pairs, {} lists",
-            time / fastest[0],
-            all / total[0],
+            "  {name:<26} {rate:6.2} M grain-steps/s  {:5.2} × free, {:5.2} × in the median round  mean {mean:6.2} {:5.2} ×  {contacts:.2} contacts a grain, {listed:.2} listed pairs, {} lists",
+            fastest(law) / fastest(0),
+            median(rounds.iter().map(|times| times[law] / times[0]).collect()),
+            total(law) / total(0),
             bed.n_rebuilds()
         );
     }
     Ok(())
+}
+
+/// The value in the middle; of a round's ratios it hardly depends on a clock that others on the machine slow down.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 fn rotating<P: Precision, R: RotationLaw<P::Real>>(

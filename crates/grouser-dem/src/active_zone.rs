@@ -58,8 +58,8 @@ const ASLEEP: u16 = u16::MAX;
 /// Looks at the speeds of grains within the time of rest.
 const LOOKS: u16 = 4;
 
-/// Distance from awake blocks within which sleeping grains are listed, in radii of the largest grain: two of them, the widest skin,
-/// and the depth to which moving grains may come into sleeping blocks.
+/// Distance from awake blocks within which sleeping grains are listed, in radii of the largest grain: two of them, twice the largest
+/// leeway, and the depth to which moving grains may come into sleeping blocks.
 const NEAR: f64 = 4.0;
 
 /// The active zone of a bed.

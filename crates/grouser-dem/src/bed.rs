@@ -240,7 +240,8 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
             zone.look(&mut self.grains, time_step, self.settings.gravity.norm());
             zone.has_changed
         });
-        if has_changed || self.neighbours.are_too_old(&self.grains, &self.settings.domain, travel) {
+        if has_changed || self.neighbours.are_too_old(&self.grains, &self.settings.domain, travel, time_step)
+        {
             self.renew_lists()?;
         }
         self.damp_background(time_step);
@@ -376,7 +377,7 @@ impl<L: ContactLaw<P::Real>, P: Precision> Bed<L, P> {
         self.neighbours.n_rebuilds
     }
 
-    /// Gap up to which a pair is listed now [m].
+    /// Mean gap up to which a pair is listed now [m].
     pub fn skin(&self) -> f64 {
         self.neighbours.skin()
     }

@@ -106,6 +106,20 @@ impl CellGrid {
         }
     }
 
+    /// Calls `visit` with every cell around `cell`, some of them more than once where there are few.
+    pub fn visit_cells_around(&self, cell: usize, mut visit: impl FnMut(usize)) {
+        let [_, n_rows, n_columns] = self.counts;
+        let place = [cell / (n_rows * n_columns), cell / n_columns % n_rows, cell % n_columns];
+        for offset in 0..27 {
+            let there = |direction: usize, digit: isize| {
+                self.neighbour(direction, place[direction], offset / digit % 3 - 1)
+            };
+            if let (Some(slab), Some(row), Some(column)) = (there(0, 9), there(1, 3), there(2, 1)) {
+                visit((slab * n_rows + row) * n_columns + column);
+            }
+        }
+    }
+
     /// Calls `visit` with ranges of grains (in sorted order) that hold every grain whose centre lies within `reach` [m] of
     /// `centre` along each axis.
     pub fn ranges_around(&self, centre: Vec3, reach: f64, mut visit: impl FnMut(std::ops::Range<u32>)) {

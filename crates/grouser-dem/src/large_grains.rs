@@ -7,6 +7,7 @@
 use crate::Domain;
 use crate::cell_grid::{CellGrid, to_f64};
 use crate::domain::Period;
+use crate::leeway::{Leeways, nearest_on_the_way};
 use crate::size_levels::SizeLevels;
 use crate::slab::{Pair, Slab, layers_of_slabs};
 use grouser_contact::{Memory, Precision, Real, Sphere};
@@ -38,12 +39,12 @@ impl LevelGrid {
         levels: &SizeLevels,
         spheres: &[Sphere<P>],
         domain: &Domain,
-        skin: f64,
+        gap: f64,
     ) -> Self {
         let is_member = |&grain: &u32| levels.of(spheres[grain as usize].radius.to_f64()) == level;
         let members: Vec<u32> = (0..spheres.len() as u32).filter(is_member).collect();
         let bodies: Vec<Sphere<P>> = members.iter().map(|&grain| spheres[grain as usize]).collect();
-        let mut grid = CellGrid::new(&bodies, domain, 2.0 * levels.largest(level) + skin);
+        let mut grid = CellGrid::new(&bodies, domain, 2.0 * levels.largest(level) + gap);
         let cells: Vec<u32> = bodies.iter().map(|sphere| grid.cell_of(sphere)).collect();
         let order = grid.sort(&cells);
         Self { grid, members: order.into_iter().map(|place| members[place as usize]).collect() }
@@ -56,15 +57,15 @@ pub(crate) fn lists_of_large_grains<P: Precision, M: Memory<P::Real>>(
     base: &CellGrid,
     spheres: &[Sphere<P>],
     domain: &Domain,
-    skin: f64,
+    leeways: &Leeways<P::Coordinate>,
     is_asleep: &[bool],
 ) -> Vec<LargeGrains<P::Real, M>> {
-    let grids: Vec<LevelGrid> =
-        (1..levels.n()).map(|level| LevelGrid::new(level, levels, spheres, domain, skin)).collect();
+    let grid = |level: usize| LevelGrid::new(level, levels, spheres, domain, leeways.widest_gap());
+    let grids: Vec<LevelGrid> = (1..levels.n()).map(grid).collect();
     let period = domain.period();
     (1..levels.n())
         .map(|level| {
-            let seek = Seek { level, levels, base, grids: &grids, spheres, period, skin, is_asleep };
+            let seek = Seek { level, levels, base, grids: &grids, spheres, period, leeways, is_asleep };
             seek.lists()
         })
         .collect()
@@ -78,13 +79,13 @@ struct Seek<'a, P: Precision> {
     grids: &'a [LevelGrid],
     spheres: &'a [Sphere<P>],
     period: Period<P::Coordinate>,
-    skin: f64,
+    leeways: &'a Leeways<P::Coordinate>,
     is_asleep: &'a [bool],
 }
 
 impl<P: Precision> Seek<'_, P> {
     fn lists<M: Memory<P::Real>>(&self) -> LargeGrains<P::Real, M> {
-        let reach = 2.0 * self.levels.largest(self.level) + self.skin;
+        let reach = 2.0 * self.levels.largest(self.level) + self.leeways.widest_gap();
         let thickness = (reach / self.base.slab_axis().1).ceil().max(1.0) as usize;
         let layer = self.base.counts[1] * self.base.counts[2];
         let ranges: Vec<std::ops::Range<u32>> = layers_of_slabs(self.base, GRAINS_PER_SLAB, thickness)
@@ -126,21 +127,23 @@ impl<P: Precision> Seek<'_, P> {
     /// Pairs of one large grain: with every smaller one, and with those of its level that come after it.
     fn pairs_of(&self, grain: u32, mut take: impl FnMut(Pair)) {
         let sphere = &self.spheres[grain as usize];
-        let skin = P::Coordinate::from_f64(self.skin);
+        let (leeway, drift) = (self.leeways.of(grain as usize), self.leeways.drift_of(grain as usize));
         let sleeps = |grain: u32| self.is_asleep.get(grain as usize) == Some(&true);
         let mut look_at = |other_grain: u32| {
             if sleeps(grain) && sleeps(other_grain) {
                 return;
             }
             let other = &self.spheres[other_grain as usize];
-            let reach = sphere.radius + other.radius + skin;
+            let reach = sphere.radius + other.radius + leeway + self.leeways.of(other_grain as usize);
             let (difference, image) = self.period.nearest(sphere.position - other.position);
-            if difference.norm_squared() < reach * reach {
+            let parting = drift - self.leeways.drift_of(other_grain as usize);
+            if nearest_on_the_way(difference, parting) < reach * reach {
                 take(Pair::new(grain, other_grain, image));
             }
         };
         let centre = to_f64(sphere);
-        let widest = |level: usize| sphere.radius.to_f64() + self.levels.largest(level) + self.skin;
+        let widest =
+            |level: usize| sphere.radius.to_f64() + self.levels.largest(level) + self.leeways.widest_gap();
         let of_base = P::Coordinate::from_f64(self.levels.largest(0));
         self.base.ranges_around(centre, widest(0), |range| {
             range.filter(|&other| self.spheres[other as usize].radius <= of_base).for_each(&mut look_at);

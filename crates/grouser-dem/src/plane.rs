@@ -3,6 +3,7 @@
 use crate::block::FrameOf;
 use crate::cell_grid::to_f64;
 use crate::force_pass::PassInput;
+use crate::leeway::Leeways;
 use crate::slab::SlabSums;
 use grouser_contact::{
     Body, Contact, ContactLaw, ContactLedger, Frame, Memory, Precision, Real, RotationLaw, Sphere, Vector,
@@ -43,17 +44,20 @@ pub(crate) struct PlaneList<T: Real, M> {
 }
 
 impl<T: Real, M: Memory<T>> PlaneList<T, M> {
-    /// Grains of `range` closer to `plane` than `skin` [m]; `remembered(grain)` is what a grain brings along.
+    /// Grains of `range` that may come to touch `plane` within their `leeways`; `remembered(grain)` is what a grain brings along.
     pub fn build<P: Precision<Real = T>>(
         plane: &Plane,
         range: impl Iterator<Item = u32>,
         spheres: &[Sphere<P>],
-        skin: f64,
+        leeways: &Leeways<P::Coordinate>,
         remembered: impl Fn(u32) -> M,
     ) -> Self {
         let near = |&grain: &u32| {
             let sphere = &spheres[grain as usize];
-            plane.height(to_f64(sphere)) < sphere.radius.to_f64() + skin
+            let drift = leeways.drift_of(grain as usize).cast::<f64>();
+            let falls = -Vec3::new(drift.x, drift.y, drift.z).dot(&plane.normal);
+            let reach = sphere.radius.to_f64() + leeways.of(grain as usize).to_f64() + falls.max(0.0);
+            plane.height(to_f64(sphere)) < reach
         };
         let grains: Vec<u32> = range.filter(near).collect();
         let memory = grains.iter().map(|&grain| remembered(grain)).collect();

@@ -3,7 +3,7 @@
 //! A pair that starts in slab s ends in s or in s + 1, so a grain of slab s receives forces from the passes over s − 1
 //! and over s alone. The order in which slabs are worked on is the matter of [`crate::sweep`].
 
-use crate::candidates::{Candidates, Found, Seeker};
+use crate::candidates::{Candidates, Found};
 use crate::cell_grid::CellGrid;
 use crate::domain::Period;
 use crate::plane::PlaneList;
@@ -80,14 +80,12 @@ pub(crate) struct SlabSums {
 }
 
 impl<T: Real, M: Memory<T>> Slab<T, M> {
-    /// Pairs of grains up to `largest` [m] whose surfaces are closer than `skin` [m], of the cell layers `layers`. Pairs of
-    /// two grains that sleep are left out; `is_asleep` is empty where nobody does.
+    /// Pairs of `candidates`, grains up to `largest` [m] that may come to touch, of the cell layers `layers`. Pairs of two grains that sleep are left out; `is_asleep` is empty where nobody does.
     pub fn build<P: Precision<Real = T>>(
         grid: &CellGrid,
         layers: std::ops::Range<usize>,
         spheres: &[Sphere<P>],
         candidates: &Candidates<P::Coordinate>,
-        skin: P::Coordinate,
         largest: P::Coordinate,
         is_asleep: &[bool],
     ) -> Self {
@@ -108,7 +106,7 @@ impl<T: Real, M: Memory<T>> Slab<T, M> {
                     rows.push(first as u32);
                     continue;
                 }
-                let seeker = Seeker { grain: i, position: sphere.position, reach: sphere.radius + skin };
+                let seeker = candidates.seeker(i);
                 let own = i + 1..grid.first[cell + 1];
                 for range in std::iter::once(own).chain(ranges.iter().cloned()) {
                     candidates.look(&seeker, range, &mut found);

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 const MAGIC: &[u8; 8] = b"GROUSER\n";
 /// Raised with every change of what a state holds.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 const HEADER: usize = 24;
 
 /// Why a checkpoint cannot be read.
