@@ -164,10 +164,12 @@ impl<C: Real> Leeways<C> {
             mean_speed += beside.norm() / n;
         }
         let spread = beyond + mean_speed;
-        let pairs_without_skin = n_pairs as f64 / n / (1.0 + self.skin() / diameter).powi(3);
+        let cubed = |x: f64| x * x * x;
+        let pairs_without_skin = n_pairs as f64 / n / cubed(1.0 + self.skin() / diameter);
         let mut skin = self.skin();
         for _ in 0..8 {
-            let growth = 3.0 * pairs_without_skin.max(0.5) / diameter * (1.0 + skin / diameter).powi(2);
+            let widened = 1.0 + skin / diameter;
+            let growth = 3.0 * pairs_without_skin.max(0.5) / diameter * widened * widened;
             skin = (2.0 * spread * REBUILD_COST / growth).sqrt();
         }
         let gently = skin.clamp(0.5 * self.skin(), 2.0 * self.skin());
