@@ -77,7 +77,8 @@ fn the_active_zone_and_every_precision_end_with_the_same_bytes_after_interruptio
         ("single", "precision: F32, active_zone: (reach_m: 0.01, wake: 0.5)"),
     ] {
         let scene = CUP.replace("outputs:", &format!("dials: ({dials}), outputs:"));
-        // One grain in twenty beds rolls on along the period for seconds: what the bytes are of does not matter here.
+        // In some beds a grain in a hole at the floor spins on about the vertical, which nothing resists in a law of spheres, for seconds:
+        // what the bytes are of does not matter here.
         let scene = scene.replace("depth_m: 0.04)],", "depth_m: 0.04)], settle: (energy_ratio: 1e-3),");
         assert!(scene.contains("settle:"));
         fs::write(path("cup.ron"), scene.replace("speed_m_s: 0.3", "speed_m_s: 0.1")).unwrap();
