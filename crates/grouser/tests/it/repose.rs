@@ -47,14 +47,17 @@ fn a_heap_without_friction_lies_nearly_flat_and_its_angle_rises_with_friction() 
             metric("angle of repose")
         })
     });
-    let mean = |k: usize| angles.iter().map(|of_seed| of_seed[k]).sum::<f64>() / 3.0;
-    let (flat, gentle) = (mean(0), mean(1));
+    let median = |k: usize| {
+        let mut of_seeds = angles.map(|of_seed| of_seed[k]);
+        of_seeds.sort_by(f64::total_cmp);
+        of_seeds[1]
+    };
+    let [flat, gentle, steep] = [0, 1, 2].map(median);
     // Frictionless packings hold 5.8° in bulk (Peyneau & Roux, Phys. Rev. E 78 (2008) 011307), four layers on a bumpy floor some more:
-    // 10.3° with a scatter of 1.7° over twenty beds.
+    // 8.7 to 12.7° over ten beds.
     assert!(flat > 0.0 && flat < 12.0, "{angles:?}");
-    assert!(gentle > flat + 6.0 && gentle < 30.0, "{angles:?}");
-    // Rough grains that cannot turn stand as a cliff, which has lost its edge (49°) in three beds of ten and not (63 to 67°) in the others.
-    assert!(angles.iter().all(|of_seed| of_seed[2] > 45.0), "{angles:?}");
+    // Rough grains that cannot turn stand as a cliff: seven to eight beds of ten at 63 to 67°, the others have lost its edge (49°).
+    assert!(gentle > flat + 6.0 && gentle < 30.0 && steep > 60.0, "{angles:?}");
 
     let bad = COLUMN.replace("column_m: 0.07", "column_m: 0.17").replace("x: Walled, ", "");
     fs::write(path("bad.ron"), bad).unwrap();
