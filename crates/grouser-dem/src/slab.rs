@@ -80,7 +80,8 @@ pub(crate) struct SlabSums {
 }
 
 impl<T: Real, M: Memory<T>> Slab<T, M> {
-    /// Pairs of `candidates`, grains up to `largest` [m] that may come to touch, of the cell layers `layers`. Pairs of two grains that sleep are left out; `is_asleep` is empty where nobody does.
+    /// Pairs of `candidates`, grains up to `largest` [m] that may come to touch, of the cell layers `layers`. Pairs of two
+    /// grains that sleep are left out; `is_asleep` is empty where nobody does.
     pub fn build<P: Precision<Real = T>>(
         grid: &CellGrid,
         layers: std::ops::Range<usize>,
